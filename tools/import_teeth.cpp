@@ -29,14 +29,10 @@ nlohmann::ordered_json pose_json(const Pose& X) {
 }
 
 nlohmann::ordered_json fit_json(const ArchFit& fit) {
-  nlohmann::ordered_json json = {{"mean_mm", fit.mean_mm},
-                                 {"median_mm", fit.median_mm},
-                                 {"p95_mm", fit.p95_mm},
-                                 {"left_out", fit.left_out},
-                                 {"halves_mm", fit.halves_mm},
-                                 {"mirrored_mm", fit.mirrored_mm},
-                                 {"points", fit.points},
-                                 {"X_CS", pose_json(fit.X_CS)}};
+  nlohmann::ordered_json json = {{"mean_mm", fit.mean_mm},     {"median_mm", fit.median_mm},
+                                 {"p95_mm", fit.p95_mm},       {"left_out", fit.left_out},
+                                 {"halves_mm", fit.halves_mm}, {"mirrored_mm", fit.mirrored_mm},
+                                 {"points", fit.points},       {"X_CS", pose_json(fit.X_CS)}};
   if (fit.exchanged_mm) json["exchanged_mm"] = *fit.exchanged_mm;
   return json;
 }
@@ -101,9 +97,8 @@ int run_import_teeth(const TeethImportOptions& options, const CommonOptions& com
   save_case(made.patient, options.out);
   bar.clear();
   if (common.json)
-    fmt::print("{}\n",
-               result_json(made, options.out)
-                   .dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+    fmt::print("{}\n", result_json(made, options.out)
+                           .dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
   if (common.prints_summary()) {
     for (const auto& note : made.notes) fmt::print(stderr, "note: {}\n", note);
     fmt::print(stderr, "{}: {} parts. Next: condyle occlude {} --out out\n", options.out.string(),
@@ -131,8 +126,7 @@ void add_import_teeth(Commands& commands, CLI::App& import) {
                   "Points picked on the upper scan, in its frame, with the names of landmarks of "
                   "the case (three or more; CSV or .mrk.json)")
       ->type_name("FILE");
-  command
-      .add_option("--lower-points", options->lower_points, "The same on the lower scan")
+  command.add_option("--lower-points", options->lower_points, "The same on the lower scan")
       ->type_name("FILE");
   command.add_option("--units", options->units, "Unit of the files; default mm")
       ->type_name("mm|cm|m|in");

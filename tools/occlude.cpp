@@ -63,7 +63,8 @@ Start parse_start(const std::string& text, const Case& patient) {
   if (text == grid_word)
     return {normal_relation(find_arches(patient)),
             "a grid about normal incisors: 2 mm sideways, 3 mm forward and back, 2° of turning"};
-  if (text.empty() && patient.X_CM_bite) return {*patient.X_CM_bite, "the scanned bite of the case"};
+  if (text.empty() && patient.X_CM_bite)
+    return {*patient.X_CM_bite, "the scanned bite of the case"};
   if (text.empty()) return {{}, "the pose of the case"};
   const auto numbers = numbers_in(text);
   if (numbers.empty()) {
@@ -93,11 +94,12 @@ Start parse_start(const std::string& text, const Case& patient) {
 }
 
 std::string bite_line(const Bite& bite) {
-  return fmt::format("{}, {} contact{}, {:.0f} % of the load left, overjet {:.1f} mm, overbite "
-                     "{:.1f} mm",
-                     bite.stable ? "stable" : "not stable", bite.contacts.size(),
-                     bite.contacts.size() == 1 ? "" : "s", 100 * bite.left_fraction,
-                     bite.after.overjet_mm, bite.after.overbite_mm);
+  return fmt::format(
+      "{}, {} contact{}, {:.0f} % of the load left, overjet {:.1f} mm, overbite "
+      "{:.1f} mm",
+      bite.stable ? "stable" : "not stable", bite.contacts.size(),
+      bite.contacts.size() == 1 ? "" : "s", 100 * bite.left_fraction, bite.after.overjet_mm,
+      bite.after.overbite_mm);
 }
 
 /// The best bite of a grid of starts; the next ones are listed in the notes.
@@ -109,8 +111,8 @@ Bite bite_from_grid(const BiteFinder& finder, const Pose& start, const Progress&
     best.others.push_back(found[i].rest);
     const double away_mm =
         (found[i].rest.X_CM * best.upper_edge - best.rest.X_CM * best.upper_edge).norm();
-    notes.push_back(fmt::format("bite {} of the grid: {}; {:.1f} mm from the first at the incisors", i + 1,
-                                bite_line(found[i]), away_mm));
+    notes.push_back(fmt::format("bite {} of the grid: {}; {:.1f} mm from the first at the incisors",
+                                i + 1, bite_line(found[i]), away_mm));
   }
   return best;
 }

@@ -50,8 +50,8 @@ SurfaceResidual surface_residual(const OrientedPoints& points_A, const SurfacePa
   std::vector<double> distance(count, far_mm), nearest(count, far_mm);
   std::vector<char> partner(count);
   parallel_for(count, fit.threads, [&](std::size_t i) {
-    nearest[i] = std::min(
-        far_mm, surface_B.tree().nearest(X_BA * points_A.points[i], far_mm).distance);
+    nearest[i] =
+        std::min(far_mm, surface_B.tree().nearest(X_BA * points_A.points[i], far_mm).distance);
     const auto pair =
         surface_B.find(X_BA * points_A.points[i], X_BA.R * points_A.normals[i], fit.least_cos);
     if (!pair) return;
@@ -64,7 +64,7 @@ SurfaceResidual surface_residual(const OrientedPoints& points_A, const SurfacePa
   std::sort(nearest.begin(), nearest.end());
   const auto at = [&](double fraction) {
     return nearest[std::min(count - 1,
-                             static_cast<std::size_t>(fraction * static_cast<double>(count)))];
+                            static_cast<std::size_t>(fraction * static_cast<double>(count)))];
   };
   residual.median_mm = at(0.5);
   residual.p95_mm = at(0.95);
@@ -92,8 +92,7 @@ std::vector<Pose> poses_about(const Pose& X_BA, const Eigen::Vector3d& center_A,
 }
 
 std::vector<RankedPose> rank_starts(const OrientedPoints& points_A, const SurfacePairs& surface_B,
-                                    std::span<const Pose> starts,
-                                    const BestFitSettings& settings) {
+                                    std::span<const Pose> starts, const BestFitSettings& settings) {
   const auto first = race(points_A.thinned(settings.few_points), surface_B, starts, settings,
                           settings.point_rounds);
   std::vector<Pose> best;
@@ -114,8 +113,7 @@ BestFit best_fit_to_surface(const OrientedPoints& points_A, const SurfacePairs& 
   starts.insert(starts.begin(), start);
   starts.insert(starts.end(), further.begin(), further.end());
   const Pose found = race(more, surface_B, starts, settings, 0).front().X_BA;
-  best.fit =
-      fit_to_surface(points_A.points, points_A.normals, surface_B, found, settings.fit);
+  best.fit = fit_to_surface(points_A.points, points_A.normals, surface_B, found, settings.fit);
   best.residual =
       surface_residual(points_A, surface_B, best.fit.X_BA, settings.far_mm, settings.fit);
   return best;

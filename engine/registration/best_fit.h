@@ -19,7 +19,7 @@ struct OrientedPoints {
 
 /// How far points lie from a surface at a pose.
 struct SurfaceResidual {
-  double trimmed_mean_mm = 0;       // of the nearest `kept` of all points
+  double trimmed_mean_mm = 0;        // of the nearest `kept` of all points
   double median_mm = 0, p95_mm = 0;  // of all points, whatever the normals
   double without_partner = 0;        // fraction of the points
 };
@@ -35,12 +35,12 @@ std::vector<Pose> poses_about(const Pose& X_BA, const Eigen::Vector3d& center_A,
 
 struct BestFitSettings {
   SurfaceFitSettings fit = {.max_iterations = 60, .kept = 0.8};
-  double far_mm = 3;              // distance of a point without a partner
-  std::size_t few_points = 120;    // for the choice among the starts
-  std::size_t more_points = 700;   // for the best of them, and for restarts
-  std::size_t refined = 5;         // starts that are fitted with more points
-  int rounds = 15;                 // of these fits
-  int point_rounds = 15;           // of whole distances before them, from the starts
+  double far_mm = 3;                        // distance of a point without a partner
+  std::size_t few_points = 120;             // for the choice among the starts
+  std::size_t more_points = 700;            // for the best of them, and for restarts
+  std::size_t refined = 5;                  // starts that are fitted with more points
+  int rounds = 15;                          // of these fits
+  int point_rounds = 15;                    // of whole distances before them, from the starts
   double angle_rad = 0.0873, shift_mm = 2;  // of the restarts about the best pose
 };
 

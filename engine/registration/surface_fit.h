@@ -12,10 +12,10 @@ struct SurfaceFitSettings {
   int max_iterations = 200;
   double kept = 0.9;  // share of the pairs, the nearest ones, that count
   int threads = 2;
-  double least_cos = 0.5;       // of the angle between the normals of partners
-  double small_mm = 1e-6;       // a step below it ends the fit
-  int point_rounds = 0;         // first iterations: whole distances are minimised, for far starts
-  double kept_first = 0.95;     // in these
+  double least_cos = 0.5;         // of the angle between the normals of partners
+  double small_mm = 1e-6;         // a step below it ends the fit
+  int point_rounds = 0;           // first iterations: whole distances are minimised, for far starts
+  double kept_first = 0.95;       // in these
   bool planes_of_points = false;  // distances along the points' normals: for noisy surfaces
 };
 

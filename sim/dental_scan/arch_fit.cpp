@@ -18,7 +18,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr int crown_point_count = 4000;
-constexpr int attitudes = 24;  // about the bite's direction: 15 degrees apart
+constexpr int attitudes = 24;            // about the bite's direction: 15 degrees apart
 constexpr double molar_fraction = 0.58;  // of the arch's depth, in front of the first molars
 constexpr double far_pick_mm = 4;        // of picked points after their rigid fit
 // A mirror image or the other arch that fits so much better is what was scanned.
@@ -90,8 +90,7 @@ Pose picked_start(const DentalScan& scan, const ArchFitRequest& request, double&
     throw InputError(fmt::format(
         "the points on {}: {} of them have a partner among the case's landmarks; three that are "
         "not on a line are needed{}",
-        scan.source, names.size(),
-        unknown.empty() ? "" : "; the case has no landmark " + unknown));
+        scan.source, names.size(), unknown.empty() ? "" : "; the case has no landmark " + unknown));
   std::string worst;
   for (std::size_t i = 0; i < names.size(); ++i)
     if (const double mm = (*X_CS * p_S[i] - p_C[i]).norm(); mm > worst_mm)
@@ -120,10 +119,7 @@ double halves_difference(const OrientedPoints& points, const ArchTarget& target,
   std::array<Pose, 2> X;
   for (const bool left : {false, true}) {
     const OrientedPoints half = half_of(points, X_CS, target.marks()[0].x(), left);
-    X[left] = fit_to_surface(
-                  half.points, half.normals, target.pairs(), X_CS,
-                  settings.fit)
-                  .X_BA;
+    X[left] = fit_to_surface(half.points, half.normals, target.pairs(), X_CS, settings.fit).X_BA;
   }
   double largest = 0;
   for (const auto& mark : target.marks()) {
@@ -143,8 +139,7 @@ ArchTarget::ArchTarget(const Part& teeth)
   if (bite_.dot(toward) < 0) bite_ = -bite_;
   if (bite_.dot(toward) < least_cos) bite_ = toward;
   const CrownPoints crowns = crown_points(teeth.mesh, bite_, crown_point_count);
-  if (crowns.points.size() == 0)
-    throw InputError(name_ + ": has no crowns to register a scan to");
+  if (crowns.points.size() == 0) throw InputError(name_ + ": has no crowns to register a scan to");
   center_ = crowns.center;
   find_marks(teeth, crowns);
 }
@@ -166,7 +161,8 @@ void ArchTarget::find_marks(const Part& teeth, const CrownPoints& crowns) {
   const Vector3d middle = box.center();
   const double molar_y = box.low.y() + molar_fraction * box.size().y();
   marks_ = {Vector3d(middle.x(), box.low.y(), middle.z()),
-            Vector3d(box.high.x(), molar_y, middle.z()), Vector3d(box.low.x(), molar_y, middle.z())};
+            Vector3d(box.high.x(), molar_y, middle.z()),
+            Vector3d(box.low.x(), molar_y, middle.z())};
   const int quadrant = upper_ ? 20 : 30, other = upper_ ? 10 : 40;
   const auto a = tooth_center(quadrant + 1), b = tooth_center(other + 1);
   if (a && b) marks_[0] = 0.5 * (*a + *b);
@@ -194,15 +190,14 @@ ArchFit fit_arch(const DentalScan& scan, const ArchTarget& target, const ArchFit
     crowns = crown_points(scan.mesh, start.R.conjugate() * target.bite(), crown_point_count);
     sides = {crowns, crowns};
   }
-  const BestFit best = best_fit_to_surface(crowns.points, target.pairs(), start, settings,
-                                           slid(start, target));
+  const BestFit best =
+      best_fit_to_surface(crowns.points, target.pairs(), start, settings, slid(start, target));
   fit.X_CS = best.fit.X_BA;
   fit.points = static_cast<int>(crowns.points.size());
   fit.mean_mm = best.residual.trimmed_mean_mm;
   fit.median_mm = best.residual.median_mm;
   fit.p95_mm = best.residual.p95_mm;
-  fit.left_out =
-      fit.points == 0 ? 1 : 1 - static_cast<double>(best.fit.pairs) / fit.points;
+  fit.left_out = fit.points == 0 ? 1 : 1 - static_cast<double>(best.fit.pairs) / fit.points;
   fit.halves_mm = halves_difference(crowns.points, target, fit.X_CS, settings);
   fit.mirrored_mm = fit_anyhow(mirrored(crowns), target, settings).residual_mm;
   if (request.opposing && fit.mean_mm > good_fit_mm)
@@ -213,7 +208,8 @@ ArchFit fit_arch(const DentalScan& scan, const ArchTarget& target, const ArchFit
 
 std::string refusal(const ArchFit& fit, const DentalScan& scan, const ArchTarget& target,
                     bool accept_residual) {
-  const char *arch = target.upper() ? "upper" : "lower", *other = target.upper() ? "lower" : "upper";
+  const char *arch = target.upper() ? "upper" : "lower",
+             *other = target.upper() ? "lower" : "upper";
   if (fit.exchanged_mm && *fit.exchanged_mm < much_better * fit.mean_mm)
     return fmt::format(
         "{} is given as the {} arch, but fits the case's {} crowns better ({:.2f} against {:.2f} "
@@ -247,13 +243,14 @@ std::vector<std::string> fit_notes(const ArchFit& fit, const DentalScan& scan,
       target.upper() ? "upper scan" : "lower scan", scan.source, target.name(), fit.mean_mm,
       fit.points, fit.median_mm, fit.p95_mm, fit.halves_mm));
   if (fit.mean_mm > noted_fit_mm)
-    notes.push_back(fmt::format("{}: {:.2f} mm is above {} mm: look at the result before you use it",
-                                scan.source, fit.mean_mm, noted_fit_mm));
-  if (fit.halves_mm > noted_halves_mm)
     notes.push_back(
-        fmt::format("{}: left and right half, fitted alone, differ by {:.2f} mm at the first molars "
-                    "or incisors (more than {} mm): look at the result before you use it",
-                    scan.source, fit.halves_mm, noted_halves_mm));
+        fmt::format("{}: {:.2f} mm is above {} mm: look at the result before you use it",
+                    scan.source, fit.mean_mm, noted_fit_mm));
+  if (fit.halves_mm > noted_halves_mm)
+    notes.push_back(fmt::format(
+        "{}: left and right half, fitted alone, differ by {:.2f} mm at the first molars "
+        "or incisors (more than {} mm): look at the result before you use it",
+        scan.source, fit.halves_mm, noted_halves_mm));
   if (fit.mirrored_mm < as_good * fit.mean_mm)
     notes.push_back(scan.source +
                     ": the arch is so symmetric that its shape does not tell it from its mirror "

@@ -47,14 +47,14 @@ inline constexpr double noted_halves_mm = 0.3;
 
 /// A scan registered to the crowns of a case.
 struct ArchFit {
-  Pose X_CS;                 // scan in the case
-  int points = 0;            // on the scan's crowns
-  double mean_mm = 0;        // of the nearest four fifths
+  Pose X_CS;                         // scan in the case
+  int points = 0;                    // on the scan's crowns
+  double mean_mm = 0;                // of the nearest four fifths
   double median_mm = 0, p95_mm = 0;  // of all points; at most 3 mm
-  double left_out = 0;       // fraction of the points that were trimmed or have no partner
-  double halves_mm = 0;      // greatest distance, at the marks, of the fits of the left and right
-                             // half alone
-  double mirrored_mm = 0;    // mean_mm of the scan's mirror image
+  double left_out = 0;               // fraction of the points that were trimmed or have no partner
+  double halves_mm = 0;    // greatest distance, at the marks, of the fits of the left and right
+                           // half alone
+  double mirrored_mm = 0;  // mean_mm of the scan's mirror image
   std::optional<double> exchanged_mm = {};  // mean_mm on the opposing arch, where this is not good
   double picks_mm = 0;                      // greatest distance of picked points
 };

@@ -28,8 +28,7 @@ double length_of(const TriMesh& mesh, const std::vector<int>& rim) {
 void cover(TriMesh& mesh, const std::vector<int>& ring, const Vector3d& normal) {
   const Vector3d right = normal.unitOrthogonal(), up = normal.cross(right);
   std::vector<Eigen::Vector2d> flat;
-  for (const int v : ring)
-    flat.emplace_back(right.dot(mesh.vertices[v]), up.dot(mesh.vertices[v]));
+  for (const int v : ring) flat.emplace_back(right.dot(mesh.vertices[v]), up.dot(mesh.vertices[v]));
   std::vector<int> loop(ring.size());
   std::iota(loop.begin(), loop.end(), 0);
   for (const auto& t : fill_loops(flat, {loop}).triangles)
@@ -56,7 +55,8 @@ std::vector<int> add_skirt(TriMesh& mesh, const std::vector<int>& rim, const Vec
   for (int k = 0; k < smoothings; ++k) {
     const std::vector<Vector3d> before = ring;
     for (std::size_t i = 0; i < count; ++i)
-      ring[i] = 0.5 * before[i] + 0.25 * (before[(i + 1) % count] + before[(i + count - 1) % count]);
+      ring[i] =
+          0.5 * before[i] + 0.25 * (before[(i + 1) % count] + before[(i + count - 1) % count]);
   }
   const int first = static_cast<int>(mesh.vertices.size());
   mesh.vertices.insert(mesh.vertices.end(), ring.begin(), ring.end());

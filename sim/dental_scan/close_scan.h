@@ -9,10 +9,10 @@ namespace condyle {
 
 /// A scan closed below its rims.
 struct ClosedScan {
-  TriMesh mesh;            // the scan's triangles first
-  int holes = 0;           // closed in the surface
-  int skirts = 0;          // rims that were continued downward and capped
-  bool closed = false;     // else some edges remain open
+  TriMesh mesh;         // the scan's triangles first
+  int holes = 0;        // closed in the surface
+  int skirts = 0;       // rims that were continued downward and capped
+  bool closed = false;  // else some edges remain open
 };
 
 /// Closes holes by flat covers, and the longest rim of each piece by a skirt of `skirt_mm` along

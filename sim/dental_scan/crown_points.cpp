@@ -15,9 +15,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double crown_height_mm = 5;   // below the local top
-constexpr double arch_height_mm = 10;   // below the highest top: curves of the arch, and its tilt
-constexpr double cell_mm = 2.5;         // of the map of heights
+constexpr double crown_height_mm = 5;  // below the local top
+constexpr double arch_height_mm = 10;  // below the highest top: curves of the arch, and its tilt
+constexpr double cell_mm = 2.5;        // of the map of heights
 constexpr int reach_cells = 2;
 
 /// Greatest height in cells across the bite direction, spread to the cells around.

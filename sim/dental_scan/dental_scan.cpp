@@ -20,6 +20,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double least_arch_mm = 35, most_arch_mm = 120;  // largest extent
+constexpr double usual_arch_mm = 85;                      // of a scan in another unit
 constexpr double least_part_mm = 12;                      // of a part of an arch
 constexpr double loose_fraction = 0.005;                  // of the area: specks
 constexpr int least_triangles = 200;
@@ -59,9 +60,8 @@ int drop_specks(TriMesh& mesh) {
       mesh.triangles[kept++] = mesh.triangles[t];
   mesh.triangles.resize(kept);
   drop_unreferenced(mesh);
-  return static_cast<int>(
-      std::count_if(area.begin(), area.end(),
-                    [&](double a) { return a < loose_fraction * whole; }));
+  return static_cast<int>(std::count_if(area.begin(), area.end(),
+                                        [&](double a) { return a < loose_fraction * whole; }));
 }
 
 void check_arch_size(const TriMesh& mesh, const std::filesystem::path& file, bool partial) {
@@ -71,7 +71,7 @@ void check_arch_size(const TriMesh& mesh, const std::filesystem::path& file, boo
   std::string fitting;
   for (const auto& [unit, mm] :
        {std::pair("cm", 10.0), std::pair("m", 1000.0), std::pair("in", 25.4)})
-    if (extent * mm >= least_arch_mm && extent * mm <= most_arch_mm && fitting.empty())
+    if (extent * mm >= least_arch_mm && extent * mm <= usual_arch_mm && fitting.empty())
       fitting = fmt::format("; with --units {} it would fit", unit);
   throw InputError(file, "",
                    fmt::format("its longest side is {:.3g} mm; a scan of a dental arch has {:.0f} "
@@ -100,8 +100,8 @@ DentalScan dental_scan(TriMesh mesh, const std::filesystem::path& file, bool par
   orient_outward(mesh);
   if (fanned_volume(mesh) < 0) flip(mesh);
   if (const int specks = drop_specks(mesh); specks > 0)
-    scan.notes.push_back(fmt::format("{}: {} loose piece{} dropped", scan.source, specks,
-                                     specks == 1 ? "" : "s"));
+    scan.notes.push_back(
+        fmt::format("{}: {} loose piece{} dropped", scan.source, specks, specks == 1 ? "" : "s"));
   if (scan.inward)
     scan.notes.push_back(scan.source + ": its triangles faced inward and were turned");
   check_arch_size(mesh, file, partial);

@@ -21,7 +21,7 @@ using Eigen::Vector3d;
 
 constexpr double unlike_arch_mm = 2.5;      // mean distance of an arch from another person's
 constexpr double exchanged_fraction = 0.8;  // of the distance that the other arch's may be below
-constexpr double tooth_reach_mm = 1.5;  // of a crown of the case from the scanned one
+constexpr double tooth_reach_mm = 1.5;      // of a crown of the case from the scanned one
 
 TriMesh moved(TriMesh mesh, const Pose& X) {
   for (auto& v : mesh.vertices) v = X * v;
@@ -33,9 +33,10 @@ const Part& crowns_of(const Case& patient, bool upper) {
   const BodyId body = upper ? patient.jaw.upper_arch : patient.jaw.lower_arch;
   const Part* teeth = patient.find(upper ? Role::upper_teeth : Role::lower_teeth, body);
   if (!teeth || teeth->mesh.empty())
-    throw InputError(fmt::format("the case has no {0} teeth to register a scan to; import them with "
-                                 "--{0}-teeth, or make the case from a CT",
-                                 upper ? "upper" : "lower"));
+    throw InputError(
+        fmt::format("the case has no {0} teeth to register a scan to; import them with "
+                    "--{0}-teeth, or make the case from a CT",
+                    upper ? "upper" : "lower"));
   return *teeth;
 }
 
@@ -94,7 +95,8 @@ void fit_scans(const ArchRegistration& registration, bool accept, ScannedArches&
     report(progress, upper ? "registering the upper arch" : "registering the lower arch",
            upper ? 0.1 : 0.5);
     const ArchFit fit = registration.fit(upper);
-    if (const auto why = refusal(fit, *registration.scan(upper), registration.target(upper), accept);
+    if (const auto why =
+            refusal(fit, *registration.scan(upper), registration.target(upper), accept);
         !why.empty())
       throw InputError(why);
     (upper ? made.upper : made.lower) = fit;
@@ -111,8 +113,7 @@ ScannedArches with_scanned_arches(Case patient, const ScannedArchesRequest& requ
   std::vector<std::string> notes;
   for (const bool upper : {true, false})
     if (const auto& fit = upper ? made.upper : made.lower)
-      for (auto& note :
-           fit_notes(*fit, *registration.scan(upper), registration.target(upper)))
+      for (auto& note : fit_notes(*fit, *registration.scan(upper), registration.target(upper)))
         notes.push_back(std::move(note));
   report(progress, "bite", 0.9);
   if (made.upper && made.lower) {
@@ -166,10 +167,9 @@ void add_average_condyles(Case& patient, std::vector<std::string>& notes) {
   const Arches arches = find_arches(patient);
   patient.landmarks.points["upper_incisal_point"] = arches.upper.edge;
   patient.landmarks.points["lower_incisal_point"] = arches.lower.edge;
-  const Vector3d middle =
-      arches.lower.edge + 0.5 * std::sqrt(3.0) * bonwill_mm *
-                              (std::sin(balkwill_rad) * arches.up -
-                               std::cos(balkwill_rad) * arches.front);
+  const Vector3d middle = arches.lower.edge + 0.5 * std::sqrt(3.0) * bonwill_mm *
+                                                  (std::sin(balkwill_rad) * arches.up -
+                                                   std::cos(balkwill_rad) * arches.front);
   patient.landmarks.points["left_condyle"] = middle + 0.5 * bonwill_mm * arches.left;
   patient.landmarks.points["right_condyle"] = middle - 0.5 * bonwill_mm * arches.left;
   notes.push_back(
@@ -196,9 +196,9 @@ void check_lone_fits(const ScannedArches& made, const ScannedArchesRequest& requ
     throw InputError(fmt::format(
         "the arches seem to be exchanged: {} the built-in patient's opposing arch better ({:.2f} "
         "against {:.2f} mm); if they are not, use --accept",
-        request.upper && request.lower ? "the scans resemble"
-                                       : (request.upper ? request.upper : request.lower)->source +
-                                             " resembles",
+        request.upper && request.lower
+            ? "the scans resemble"
+            : (request.upper ? request.upper : request.lower)->source + " resembles",
         exchanged, own));
 }
 
@@ -227,12 +227,11 @@ ScannedArches case_of_scanned_arches(const ScannedArchesRequest& request, const 
     if (made.together->in_occlusion) {
       X_lower = X_upper;
       patient.X_CM_bite = Pose{};
-      made.notes.push_back(fmt::format(
-          "the scans lie in occlusion ({} places left, {} right) and stay in it",
-          made.together->left, made.together->right));
+      made.notes.push_back(
+          fmt::format("the scans lie in occlusion ({} places left, {} right) and stay in it",
+                      made.together->left, made.together->right));
     } else {
-      made.notes.push_back("the scans do not lie in occlusion in one frame (" +
-                           made.together->why +
+      made.notes.push_back("the scans do not lie in occlusion in one frame (" + made.together->why +
                            "): they lie as the built-in patient's arches do; occlude finds a bite");
     }
   }

@@ -29,16 +29,14 @@ ScannedBite scanned_bite(const TriMesh& upper, const TriMesh& lower, const Pose&
   constexpr int count = 6000;
   ScannedBite bite;
   const SurfacePairs surface(upper);
-  const CrownPoints crowns =
-      crown_points(lower, X_CU.R.conjugate() * Vector3d::UnitZ(), count);
+  const CrownPoints crowns = crown_points(lower, X_CU.R.conjugate() * Vector3d::UnitZ(), count);
   std::set<std::pair<int, int>> left, right;
   int inside = 0;
   for (std::size_t i = 0; i < crowns.points.size(); ++i) {
     const Vector3d& p = crowns.points.points[i];
     const SurfacePoint near = surface.tree().signed_nearest(p, overlap_reach_mm);
     if (near.triangle < 0) continue;
-    if (near.distance < -overlap_mm && surface.find(p, surface.tree().pseudonormal(near)))
-      ++inside;
+    if (near.distance < -overlap_mm && surface.find(p, surface.tree().pseudonormal(near))) ++inside;
     const auto facing = surface.find(p, -crowns.points.normals[i]);
     if (!facing || facing->distance < -deepest_mm || facing->distance > farthest_mm) continue;
     const Vector3d place = X_CU * p;

@@ -225,7 +225,8 @@ Arches find_arches(const Case& patient) {
 Pose normal_relation(const Arches& arches) {
   const Matrix3d upper = axes_of(arches.upper);
   const Matrix3d turn = upper * axes_of(arches.lower).transpose();
-  const Vector3d edge = arches.upper.edge + upper * Vector3d(0, normal_overjet_mm, normal_overbite_mm);
+  const Vector3d edge =
+      arches.upper.edge + upper * Vector3d(0, normal_overjet_mm, normal_overbite_mm);
   return {Eigen::Quaterniond(turn), edge - turn * arches.lower.edge};
 }
 

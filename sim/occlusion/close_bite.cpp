@@ -238,8 +238,7 @@ std::vector<RestingPose> find_bites_from_grid(const BiteModel& model, const Pose
   if (found.size() > kept) found.resize(kept);
   report(progress, "refining", 0.8);
   for (const auto& bite : found)
-    add_distinct(model,
-                 {model.fine(model.opened(bite.X_CM).value_or(bite.X_CM), settings.threads)},
+    add_distinct(model, {model.fine(model.opened(bite.X_CM).value_or(bite.X_CM), settings.threads)},
                  refined_bites);
   return refined_bites;
 }

@@ -47,8 +47,8 @@ void inspect_pairs(const Case& patient, const ContactSet& set, double max_overla
 double grid_charge(const Bite& bite, const OcclusionSettings& settings) {
   constexpr double uneven_mm = 1, unstable_mm = 5;  // of closing that it is worth
   const double uneven = 2 * std::abs(bite.left_fraction - 0.5);
-  return bite.rest.work + settings.closing_force_N * (uneven_mm * uneven +
-                                                      (bite.stable ? 0 : unstable_mm));
+  return bite.rest.work +
+         settings.closing_force_N * (uneven_mm * uneven + (bite.stable ? 0 : unstable_mm));
 }
 
 std::string why_unstable(const Bite& bite, const OcclusionSettings& settings) {

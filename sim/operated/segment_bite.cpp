@@ -27,8 +27,9 @@ SegmentBite find_segment_bite(const Case& patient, const Plan& plan, const std::
                               OcclusionSettings settings, const Progress& progress,
                               SegmentBiteStart start) {
   if (start == SegmentBiteStart::scanned && !patient.X_CM_bite)
-    throw InputError("the case holds no scanned bite; import dental scans in occlusion with condyle "
-                     "import teeth");
+    throw InputError(
+        "the case holds no scanned bite; import dental scans in occlusion with condyle "
+        "import teeth");
   report(progress, "replaying the plan", 0);
   const Operated operated = apply_plan(patient, without_move(plan, segment));
   const BodyTree& bodies = operated.patient.bodies;

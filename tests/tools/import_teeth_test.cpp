@@ -24,8 +24,8 @@ TEST(ImportTeeth, ScansReplaceTheCrownsOrMakeACaseAlone) {
   const Folder folder;
   ASSERT_EQ(condyle({"sample", "--out", folder / "sample"}).code, 0);
   const std::string upper = folder / "sample/upper.stl", lower = folder / "sample/lower.stl";
-  const auto in_case = condyle({"import", "teeth", "built-in:class-iii", "--upper", upper,
-                                "--out", folder / "teeth", "--json"});
+  const auto in_case = condyle({"import", "teeth", "built-in:class-iii", "--upper", upper, "--out",
+                                folder / "teeth", "--json"});
   ASSERT_EQ(in_case.code, 0) << in_case.err;
   const auto json = nlohmann::json::parse(in_case.out);
   EXPECT_LT(json["upper"]["mean_mm"].get<double>(), 0.05);
@@ -33,8 +33,8 @@ TEST(ImportTeeth, ScansReplaceTheCrownsOrMakeACaseAlone) {
   EXPECT_FALSE(json.contains("bite"));
   EXPECT_FALSE(json.contains("lower"));
 
-  const auto alone = condyle(
-      {"import", "teeth", "--upper", upper, "--lower", lower, "--out", folder / "arches"});
+  const auto alone =
+      condyle({"import", "teeth", "--upper", upper, "--lower", lower, "--out", folder / "arches"});
   ASSERT_EQ(alone.code, 0) << alone.err;
   EXPECT_NE(alone.err.find("the scans lie in occlusion"), std::string::npos) << alone.err;
   EXPECT_NE(alone.err.find("Bonwill"), std::string::npos);
@@ -57,9 +57,8 @@ TEST(ImportTeeth, WrongFilesAreRefusedAndNothingIsWritten) {
     expect_refusal(condyle({"import", "teeth", "--upper", folder / file, "--out", out}), file);
   expect_refusal(condyle({"import", "teeth", "--out", out}), "--upper or --lower");
   write_box_patient(folder.path());
-  expect_refusal(
-      condyle({"import", "teeth", "--upper", folder / "maxilla.stl", "--out", out}),
-      "maxilla.stl");
+  expect_refusal(condyle({"import", "teeth", "--upper", folder / "maxilla.stl", "--out", out}),
+                 "maxilla.stl");
   expect_refusal(condyle({"import", "teeth", "--lower", folder / "empty.stl", "--upper-points",
                           folder / "marks.csv", "--out", out}),
                  "--upper-points needs --upper");

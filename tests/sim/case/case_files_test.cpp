@@ -86,7 +86,8 @@ TEST(CaseFiles, LoadingIsBitIdenticalToSaving) {
 TEST(CaseFiles, TheScannedBiteIsStoredAndChecked) {
   const TempFolder folder;
   Case saved = sample();
-  saved.X_CM_bite = test::arbitrary_pose(3);
+  const Eigen::Affine3d moved = test::arbitrary_pose(3);
+  saved.X_CM_bite = Pose{Eigen::Quaterniond(moved.rotation()).normalized(), moved.translation()};
   save_case(saved, folder.path() / "case");
   const Case loaded = load_case(folder.path() / "case");
   ASSERT_TRUE(loaded.X_CM_bite);

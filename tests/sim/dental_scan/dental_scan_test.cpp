@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "engine/core/error.h"
+#include "engine/field/mesh_field.h"
 #include "engine/mesh/topology.h"
 #include "engine/mesh/triangle_tree.h"
 #include "sim/dental_scan/close_scan.h"
@@ -91,6 +92,27 @@ Case with_open_bite(const Pose& X) {
   return patient;
 }
 
+/// Fraction of the crowns' triangles where the other part has another tooth or none.
+double wrongly_numbered(const Part& part, const Part& truth) {
+  const TriangleTree tree(part.mesh);
+  const auto number_at = [](const Part& teeth, int triangle) {
+    for (const Tooth& tooth : teeth.teeth)
+      if (triangle >= tooth.first_triangle &&
+          triangle < tooth.first_triangle + tooth.triangle_count)
+        return tooth.fdi;
+    return 0;
+  };
+  int all = 0, wrong = 0;
+  for (int t = 0; t < static_cast<int>(truth.mesh.triangles.size()); ++t) {
+    const int near = tree.nearest(truth.mesh.vertices[truth.mesh.triangles[t][0]], 0.3).triangle;
+    if (near < 0) continue;  // roots
+    ++all;
+    wrong += number_at(part, near) != number_at(truth, t);
+  }
+  EXPECT_GT(all, 10000);
+  return static_cast<double>(wrong) / all;
+}
+
 Pose small_pose(double deg, const Vector3d& axis, const Vector3d& about, const Vector3d& shift) {
   Pose pose;
   pose.R = Eigen::AngleAxisd(deg * M_PI / 180, axis.normalized());
@@ -106,6 +128,31 @@ TEST(DentalScan, IsFoundOnRealCrowns) {
   const auto patient = case_ubc();
   if (!patient) GTEST_SKIP() << "real data is absent";
   expect_found_in_ct(*patient, 2);
+}
+
+TEST(DentalScan, ConnectedScansWithGumAreFound) {
+  // Crowns and gum as one surface, as scanners give them, 13 mm high.
+  TriMesh solid = crowns(builtin(), true).mesh;
+  const TriMesh& gum = builtin().find(Role::upper_gums)->mesh;
+  const int offset = static_cast<int>(solid.vertices.size());
+  solid.vertices.insert(solid.vertices.end(), gum.vertices.begin(), gum.vertices.end());
+  for (const auto& t : gum.triangles)
+    solid.triangles.push_back(t + Eigen::Vector3i::Constant(offset));
+  const Box box = bounding_box(solid);
+  const auto grid =
+      even_grid({box.low - Vector3d::Constant(2), box.high + Vector3d::Constant(2)}, 0.4);
+  TriMesh mesh = isosurface(mesh_field(solid, grid, 2, 2));
+  std::vector<double> values;
+  for (const auto& v : mesh.vertices) values.push_back(v.z() - box.low.z() - 13);
+  mesh = largest_piece(clipped(mesh, values));
+  const Pose X_SC = random_pose(12);
+  const DentalScan scan = dental_scan(carried(mesh, X_SC), "gum.ply");
+  const ArchFit fit = fitted(scan, crowns(builtin(), true));
+  EXPECT_LT(pose_error(scan.mesh, fit.X_CS, X_SC.inverse()).largest_mm, 0.1);
+  EXPECT_LT(fit.mean_mm, 0.05);
+  const ClosedScan closed = close_scan(carried(scan.mesh, fit.X_CS), Vector3d::UnitZ());
+  EXPECT_TRUE(closed.closed);
+  EXPECT_EQ(closed.skirts, 1);
 }
 
 TEST(DentalScan, PickedPointsStartTheFitAndWrongOnesAreRefused) {
@@ -142,15 +189,11 @@ TEST(DentalScan, MirroredScansAreRefused) {
   const ArchTarget target(teeth);
   TriMesh mesh = made_scan(teeth, {}, 3);
   for (auto& v : mesh.vertices) v.x() = -v.x();
-  TriMesh turned = mesh;
-  flip(turned);
   const Pose X = random_pose(9);
-  for (const TriMesh& mirror : {mesh, turned}) {
-    const DentalScan scan = dental_scan(carried(mirror, X), "scan.ply");
-    EXPECT_EQ(scan.inward, mirror.triangles[0] == mesh.triangles[0]);
-    const ArchFit fit = fit_arch(scan, target, {});
-    expect_words(refusal(fit, scan, target, true), {"scan.ply is mirrored"});
-  }
+  const DentalScan mirror = dental_scan(carried(mesh, X), "mirror.ply");
+  EXPECT_TRUE(mirror.inward);
+  expect_words(refusal(fit_arch(mirror, target, {}), mirror, target, true),
+               {"mirror.ply is mirrored"});
   const DentalScan scan = dental_scan(made_scan(teeth, X, 3), "scan.ply");
   EXPECT_EQ(refusal(fit_arch(scan, target, {}), scan, target, false), "");
 }
@@ -206,18 +249,7 @@ TEST(ScannedArches, ReplaceTheCrownsAndKeepTheScannedBite) {
     EXPECT_TRUE(inspect(part.mesh).closed());
     EXPECT_EQ(part.name, truth.name);
     ASSERT_EQ(part.teeth.size(), truth.teeth.size());
-    // Each tooth has its own number and lies where it was.
-    const TriangleTree tree(truth.mesh);
-    for (std::size_t i = 0; i < part.teeth.size(); ++i) {
-      EXPECT_EQ(part.teeth[i].fdi, truth.teeth[i].fdi);
-      Vector3d middle = Vector3d::Zero();
-      for (int t = 0; t < part.teeth[i].triangle_count; ++t)
-        middle += part.mesh.vertices[part.mesh.triangles[part.teeth[i].first_triangle + t][0]] /
-                  part.teeth[i].triangle_count;
-      const int triangle = tree.nearest(middle).triangle;
-      EXPECT_GE(triangle, truth.teeth[i].first_triangle);
-      EXPECT_LT(triangle, truth.teeth[i].first_triangle + truth.teeth[i].triangle_count);
-    }
+    EXPECT_LT(wrongly_numbered(part, truth), 0.03);
   }
 }
 

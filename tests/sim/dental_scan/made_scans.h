@@ -42,7 +42,8 @@ inline TriMesh cut_at_gum(const TriMesh& mesh, bool upper, double height_mm = 7)
 inline void add_noise(TriMesh& mesh, double sigma_mm, unsigned seed) {
   std::mt19937 random(seed);
   std::normal_distribution<double> normal(0, sigma_mm);
-  for (auto& v : mesh.vertices) v += Eigen::Vector3d(normal(random), normal(random), normal(random));
+  for (auto& v : mesh.vertices)
+    v += Eigen::Vector3d(normal(random), normal(random), normal(random));
 }
 
 inline void punch_hole(TriMesh& mesh, const Eigen::Vector3d& at, double radius_mm) {
