@@ -31,8 +31,9 @@ nlohmann::ordered_json pose_json(const Pose& X) {
 nlohmann::ordered_json fit_json(const ArchFit& fit) {
   nlohmann::ordered_json json = {{"mean_mm", fit.mean_mm},     {"median_mm", fit.median_mm},
                                  {"p95_mm", fit.p95_mm},       {"left_out", fit.left_out},
-                                 {"halves_mm", fit.halves_mm}, {"mirrored_mm", fit.mirrored_mm},
-                                 {"points", fit.points},       {"X_CS", pose_json(fit.X_CS)}};
+                                 {"halves_mm", fit.halves_mm}, {"points", fit.points},
+                                 {"X_CS", pose_json(fit.X_CS)}};
+  if (fit.mirrored_mm) json["mirrored_mm"] = *fit.mirrored_mm;
   if (fit.exchanged_mm) json["exchanged_mm"] = *fit.exchanged_mm;
   return json;
 }

@@ -37,8 +37,8 @@ struct BestFitSettings {
   SurfaceFitSettings fit = {.max_iterations = 60, .kept = 0.8};
   double far_mm = 3;                        // distance of a point without a partner
   std::size_t few_points = 120;             // for the choice among the starts
-  std::size_t more_points = 700;            // for the best of them, and for restarts
-  std::size_t refined = 5;                  // starts that are fitted with more points
+  std::size_t more_points = 500;            // for the best of them, and for restarts
+  std::size_t refined = 4;                  // starts that are fitted with more points
   int rounds = 15;                          // of these fits
   int point_rounds = 15;                    // of whole distances before them, from the starts
   double angle_rad = 0.0873, shift_mm = 2;  // of the restarts about the best pose

@@ -18,6 +18,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr int crown_point_count = 4000;
+constexpr std::size_t half_point_count = 1000;
 constexpr int attitudes = 24;            // about the bite's direction: 15 degrees apart
 constexpr double molar_fraction = 0.58;  // of the arch's depth, in front of the first molars
 constexpr double far_pick_mm = 4;        // of picked points after their rigid fit
@@ -111,7 +112,7 @@ OrientedPoints half_of(const OrientedPoints& points, const Pose& X_CS, double mi
       half.points.push_back(points.points[i]);
       half.normals.push_back(points.normals[i]);
     }
-  return half;
+  return half.thinned(half_point_count);
 }
 
 double halves_difference(const OrientedPoints& points, const ArchTarget& target, const Pose& X_CS,
@@ -199,7 +200,8 @@ ArchFit fit_arch(const DentalScan& scan, const ArchTarget& target, const ArchFit
   fit.p95_mm = best.residual.p95_mm;
   fit.left_out = fit.points == 0 ? 1 : 1 - static_cast<double>(best.fit.pairs) / fit.points;
   fit.halves_mm = halves_difference(crowns.points, target, fit.X_CS, settings);
-  fit.mirrored_mm = fit_anyhow(mirrored(crowns), target, settings).residual_mm;
+  if (request.mirror_test)
+    fit.mirrored_mm = fit_anyhow(mirrored(crowns), target, settings).residual_mm;
   if (request.opposing && fit.mean_mm > good_fit_mm)
     fit.exchanged_mm = std::min(fit_anyhow(sides[0], *request.opposing, settings).residual_mm,
                                 fit_anyhow(sides[1], *request.opposing, settings).residual_mm);
@@ -215,16 +217,17 @@ std::string refusal(const ArchFit& fit, const DentalScan& scan, const ArchTarget
         "{} is given as the {} arch, but fits the case's {} crowns better ({:.2f} against {:.2f} "
         "mm): the arches are exchanged",
         scan.source, arch, other, *fit.exchanged_mm, fit.mean_mm);
-  if (fit.mirrored_mm < much_better * fit.mean_mm)
+  if (fit.mirrored_mm && *fit.mirrored_mm < much_better * fit.mean_mm)
     return fmt::format(
         "{} is mirrored: its mirror image fits the case's {} crowns better ({:.2f} against {:.2f} "
         "mm)",
-        scan.source, arch, fit.mirrored_mm, fit.mean_mm);
-  if (scan.inward && fit.mirrored_mm < as_good * fit.mean_mm && !accept_residual)
+        scan.source, arch, *fit.mirrored_mm, fit.mean_mm);
+  if (scan.inward && fit.mirrored_mm && *fit.mirrored_mm < as_good * fit.mean_mm &&
+      !accept_residual)
     return fmt::format(
         "{} seems to be mirrored: its triangles face inward, and its mirror image fits as well "
         "({:.2f} against {:.2f} mm); export it again, or use --accept",
-        scan.source, fit.mirrored_mm, fit.mean_mm);
+        scan.source, *fit.mirrored_mm, fit.mean_mm);
   if (fit.mean_mm > refused_fit_mm && !accept_residual)
     return fmt::format(
         "{} does not fit the case's {} crowns: mean distance {:.2f} mm after registration (good up "
@@ -251,7 +254,7 @@ std::vector<std::string> fit_notes(const ArchFit& fit, const DentalScan& scan,
         "{}: left and right half, fitted alone, differ by {:.2f} mm at the first molars "
         "or incisors (more than {} mm): look at the result before you use it",
         scan.source, fit.halves_mm, noted_halves_mm));
-  if (fit.mirrored_mm < as_good * fit.mean_mm)
+  if (fit.mirrored_mm && *fit.mirrored_mm < as_good * fit.mean_mm)
     notes.push_back(scan.source +
                     ": the arch is so symmetric that its shape does not tell it from its mirror "
                     "image");

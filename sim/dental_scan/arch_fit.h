@@ -52,9 +52,9 @@ struct ArchFit {
   double mean_mm = 0;                // of the nearest four fifths
   double median_mm = 0, p95_mm = 0;  // of all points; at most 3 mm
   double left_out = 0;               // fraction of the points that were trimmed or have no partner
-  double halves_mm = 0;    // greatest distance, at the marks, of the fits of the left and right
-                           // half alone
-  double mirrored_mm = 0;  // mean_mm of the scan's mirror image
+  double halves_mm = 0;  // greatest distance, at the marks, of the fits of the left and right
+                         // half alone
+  std::optional<double> mirrored_mm = {};   // mean_mm of the mirror image, where tested
   std::optional<double> exchanged_mm = {};  // mean_mm on the opposing arch, where this is not good
   double picks_mm = 0;                      // greatest distance of picked points
 };
@@ -63,6 +63,7 @@ struct ArchFitRequest {
   Landmarks picks = {};      // on the scan, in its frame; three or more start the fit
   Landmarks landmarks = {};  // of the case, partners of the picks
   const ArchTarget* opposing = nullptr;
+  bool mirror_test = true;  // not for the crowns of another person
   int threads = 2;
 };
 

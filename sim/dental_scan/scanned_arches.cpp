@@ -73,8 +73,9 @@ class ArchRegistration {
   }
   const ArchTarget& target(bool upper) const { return *target_[upper]; }
 
-  ArchFit fit(bool upper) const {
+  ArchFit fit(bool upper, bool mirror_test = true) const {
     ArchFitRequest asked;
+    asked.mirror_test = mirror_test;
     asked.picks = upper ? request_.upper_picks : request_.lower_picks;
     asked.landmarks = patient_.landmarks;
     asked.opposing = target_[!upper] ? &*target_[!upper] : nullptr;
@@ -212,7 +213,7 @@ ScannedArches case_of_scanned_arches(const ScannedArchesRequest& request, const 
     if (!registration.scan(upper)) continue;
     report(progress, upper ? "turning the upper arch" : "turning the lower arch",
            upper ? 0.1 : 0.5);
-    (upper ? made.upper : made.lower) = registration.fit(upper);
+    (upper ? made.upper : made.lower) = registration.fit(upper, false);
   }
   check_lone_fits(made, request);
   Case& patient = made.patient;

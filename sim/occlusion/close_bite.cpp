@@ -26,6 +26,7 @@ constexpr double still_mm = 1e-6;
 constexpr int max_steps = 400;
 constexpr double open_step_mm = 0.5, max_open_mm = 30;
 constexpr double same_mm = 0.1;
+constexpr double slipped_mm = 15;  // displacement from the start of an arch without a bite
 constexpr int max_rounds = 4;
 constexpr std::size_t refined = 3;  // coarse bites that are refined
 
@@ -42,6 +43,19 @@ void add_distinct(const BiteModel& model, const std::vector<RestingPose>& more,
         }))
       distinct.push_back(bite);
   found = std::move(distinct);
+}
+
+/// Drops poses in which the lower arch has slipped off the upper one, which has the least energy of
+/// all; of these alone, the one nearest to the start stays.
+void drop_slipped(const BiteModel& model, const Pose& start, std::vector<RestingPose>& poses) {
+  const auto moved = [&](const RestingPose& pose) {
+    return model.max_displacement_mm(pose.X_CM, start);
+  };
+  const RestingPose nearest =
+      *std::min_element(poses.begin(), poses.end(),
+                        [&](const auto& a, const auto& b) { return moved(a) < moved(b); });
+  std::erase_if(poses, [&](const auto& pose) { return !(moved(pose) < slipped_mm); });
+  if (poses.empty()) poses.push_back(nearest);
 }
 
 [[noreturn]] void refuse_overlap() {
@@ -234,12 +248,15 @@ std::vector<RestingPose> find_bites_from_grid(const BiteModel& model, const Pose
   parallel_for(froms.size(), settings.threads,
                [&](std::size_t i) { coarse[i] = model.coarse(froms[i], 1); });
   starts = static_cast<int>(froms.size());
+  drop_slipped(model, start, coarse);
   add_distinct(model, coarse, found);
   if (found.size() > kept) found.resize(kept);
   report(progress, "refining", 0.8);
+  std::vector<RestingPose> fine;
   for (const auto& bite : found)
-    add_distinct(model, {model.fine(model.opened(bite.X_CM).value_or(bite.X_CM), settings.threads)},
-                 refined_bites);
+    fine.push_back(model.fine(model.opened(bite.X_CM).value_or(bite.X_CM), settings.threads));
+  drop_slipped(model, start, fine);
+  add_distinct(model, fine, refined_bites);
   return refined_bites;
 }
 
