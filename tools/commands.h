@@ -26,9 +26,10 @@ void add_phantom(Commands& commands);
 void add_sample(Commands& commands);
 void add_bench(Commands& commands);  // in bench/bench.cpp
 
-/// Adds `import ct`.
+/// Each adds a subcommand of `import`.
 void add_import_ct(Commands& commands, CLI::App& import);
 void add_import_face(Commands& commands, CLI::App& import);
+void add_import_teeth(Commands& commands, CLI::App& import);
 
 /// Prints a page of the manual; without a subject their list. throws: InputError.
 int run_help(const std::string& subject);

@@ -129,10 +129,12 @@ void add_import(Commands& commands) {
   CLI::App& import = commands.add_parent(
       "import", "Make a case from your files",
       "condyle import meshes --mandible jaw.stl --maxilla maxilla.stl --out mycase\n"
-      "  condyle import ct scan --list");
+      "  condyle import ct scan --list\n"
+      "  condyle import teeth patient --upper upper.stl --lower lower.stl --out patient-teeth");
   add_meshes(commands, import);
   add_import_ct(commands, import);
   add_import_face(commands, import);
+  add_import_teeth(commands, import);
 }
 
 }  // namespace condyle

@@ -13,6 +13,7 @@
 #include "render/gl/gl_context.h"
 #include "render/recording/render_metadata.h"
 #include "sim/motion/recording.h"
+#include "sim/occlusion/arches.h"
 #include "sim/operated/operated_scene.h"
 #include "sim/report/occlusion_report.h"
 #include "tools/bite_picture.h"
@@ -38,6 +39,14 @@ struct Start {
   std::string words;
 };
 
+constexpr const char* grid_word = "arches";
+
+/// Two arches without bone and without a scanned bite: no pose of the lower one is known.
+bool is_arches_alone(const Case& patient) {
+  return !patient.X_CM_bite && std::all_of(patient.parts.begin(), patient.parts.end(),
+                                           [](const Part& part) { return is_teeth(part.role); });
+}
+
 /// The start as numbers, if the text consists of numbers and commas.
 std::vector<double> numbers_in(const std::string& text) {
   std::vector<double> numbers;
@@ -51,6 +60,11 @@ std::vector<double> numbers_in(const std::string& text) {
 }
 
 Start parse_start(const std::string& text, const Case& patient) {
+  if (text == grid_word)
+    return {normal_relation(find_arches(patient)),
+            "a grid about normal incisors: 2 mm sideways, 3 mm forward and back, 2° of turning"};
+  if (text.empty() && patient.X_CM_bite)
+    return {*patient.X_CM_bite, "the scanned bite of the case"};
   if (text.empty()) return {{}, "the pose of the case"};
   const auto numbers = numbers_in(text);
   if (numbers.empty()) {
@@ -79,6 +93,30 @@ Start parse_start(const std::string& text, const Case& patient) {
                       moved.x(), moved.y(), moved.z(), turned.x(), turned.y(), turned.z())};
 }
 
+std::string bite_line(const Bite& bite) {
+  return fmt::format(
+      "{}, {} contact{}, {:.0f} % of the load left, overjet {:.1f} mm, overbite "
+      "{:.1f} mm",
+      bite.stable ? "stable" : "not stable", bite.contacts.size(),
+      bite.contacts.size() == 1 ? "" : "s", 100 * bite.left_fraction, bite.after.overjet_mm,
+      bite.after.overbite_mm);
+}
+
+/// The best bite of a grid of starts; the next ones are listed in the notes.
+Bite bite_from_grid(const BiteFinder& finder, const Pose& start, const Progress& progress,
+                    std::vector<std::string>& notes) {
+  const std::vector<Bite> found = finder.find_from_grid(start, progress);
+  Bite best = found.front();
+  for (std::size_t i = 1; i < found.size(); ++i) {
+    best.others.push_back(found[i].rest);
+    const double away_mm =
+        (found[i].rest.X_CM * best.upper_edge - best.rest.X_CM * best.upper_edge).norm();
+    notes.push_back(fmt::format("bite {} of the grid: {}; {:.1f} mm from the first at the incisors",
+                                i + 1, bite_line(found[i]), away_mm));
+  }
+  return best;
+}
+
 /// Name of the picture's file, or empty with a note where drawing is impossible.
 std::string write_picture(const std::filesystem::path& folder, const Case& patient,
                           const Bite& bite, double film_mm, int threads,
@@ -101,12 +139,7 @@ std::string write_picture(const std::filesystem::path& folder, const Case& patie
 
 /// The bite before the operation in one sentence.
 std::string before_text(const Bite& bite) {
-  return fmt::format(
-      "before the operation the bite was {}: {} contact{}, {:.0f} % of the load left, overjet "
-      "{:.1f} mm, overbite {:.1f} mm",
-      bite.stable ? "stable" : "not stable", bite.contacts.size(),
-      bite.contacts.size() == 1 ? "" : "s", 100 * bite.left_fraction, bite.after.overjet_mm,
-      bite.after.overbite_mm);
+  return "before the operation the bite was " + bite_line(bite);
 }
 
 int run_occlude(const OccludeOptions& options, const CommonOptions& common) {
@@ -123,11 +156,18 @@ int run_occlude(const OccludeOptions& options, const CommonOptions& common) {
     before = BiteFinder(patient, settings, bar.callback())
                  .find(parse_start(options.start, patient).X_CM, bar.callback());
     patient = operate(patient, *plan).patient;
+    patient.X_CM_bite.reset();  // it was scanned before
   }
-  const Start start = parse_start(options.start, patient);
-  OcclusionReport report{
-      patient.name, start.words, settings,
-      BiteFinder(patient, settings, bar.callback()).find(start.X_CM, bar.callback())};
+  const bool grid =
+      options.start == grid_word || (options.start.empty() && is_arches_alone(patient));
+  if (grid)
+    for (const char* condyle : {"left_condyle", "right_condyle"})
+      patient.landmarks.points.erase(condyle);  // no joint holds an arch that may lie anywhere
+  const Start start = parse_start(grid ? grid_word : options.start, patient);
+  OcclusionReport report{patient.name, start.words, settings, {}};
+  const BiteFinder finder(patient, settings, bar.callback());
+  report.bite = grid ? bite_from_grid(finder, start.X_CM, bar.callback(), report.notes)
+                     : finder.find(start.X_CM, bar.callback());
   const Bite& bite = report.bite;
   if (before) report.notes.push_back(before_text(*before));
   if (!options.out.empty()) {
@@ -165,8 +205,9 @@ void add_occlude(Commands& commands) {
       .add_option("--start", options->start,
                   "Where the mandible starts: a pose file, or its displacement from the pose of "
                   "the case in mm to the left, back and up, optionally with rotations about these "
-                  "axes in degrees; default the pose of the case")
-      ->type_name("FILE|X,Y,Z[,RX,RY,RZ]");
+                  "axes in degrees; arches: a grid about normal incisors, of which the best three "
+                  "bites are listed; default the scanned bite of the case, else its pose")
+      ->type_name("FILE|arches|X,Y,Z[,RX,RY,RZ]");
   in_range(command.add_option("--paper", options->film_mm,
                               "Thickness of the articulating paper, mm; default 0.1"),
            0.02, 0.3);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/core/parallel.h"
+#include "engine/registration/rigid_fit.h"
 
 namespace condyle {
 namespace {
@@ -55,7 +56,6 @@ SurfaceFit fit_to_surface(std::span<const Eigen::Vector3d> p_A,
                           std::span<const Eigen::Vector3d> normals_A, const SurfacePairs& surface_B,
                           const Pose& start, const SurfaceFitSettings& settings) {
   constexpr std::size_t fewest = 30;
-  constexpr double small_mm = 1e-6;
   assert(p_A.size() == normals_A.size());
   SurfaceFit fit;
   fit.X_BA = start;
@@ -64,9 +64,12 @@ SurfaceFit fit_to_surface(std::span<const Eigen::Vector3d> p_A,
   for (; fit.iterations <= settings.max_iterations; ++fit.iterations) {
     parallel_for(p_A.size(), settings.threads, [&](std::size_t i) {
       p_B[i] = fit.X_BA * p_A[i];
-      pairs[i] = surface_B.find(p_B[i], fit.X_BA.R * normals_A[i]);
+      const Eigen::Vector3d normal = fit.X_BA.R * normals_A[i];
+      pairs[i] = surface_B.find(p_B[i], normal, settings.least_cos);
+      if (settings.planes_of_points && pairs[i]) pairs[i]->normal = normal;
     });
-    const auto used = trimmed(pairs, settings.kept);
+    const bool whole = fit.iterations < settings.point_rounds;
+    const auto used = trimmed(pairs, whole ? settings.kept_first : settings.kept);
     fit.pairs = static_cast<int>(used.size());
     if (used.size() < fewest) return fit;
     Eigen::Vector3d center = Eigen::Vector3d::Zero();
@@ -77,6 +80,12 @@ SurfaceFit fit_to_surface(std::span<const Eigen::Vector3d> p_A,
     }
     fit.rms_mm = std::sqrt(squares / static_cast<double>(used.size()));
     if (fit.converged || fit.iterations == settings.max_iterations) return fit;
+    if (whole) {
+      std::vector<Eigen::Vector3d> from, to;
+      for (const std::size_t i : used) from.push_back(p_B[i]), to.push_back(pairs[i]->point);
+      if (const auto moved = rigid_fit(from, to)) fit.X_BA = *moved * fit.X_BA;
+      continue;
+    }
     const Vector6 step = step_of(p_B, pairs, used, center);
     if (!step.allFinite()) return fit;
     double radius = 0;
@@ -86,7 +95,7 @@ SurfaceFit fit_to_surface(std::span<const Eigen::Vector3d> p_A,
     if (angle > 0) moved.R = Eigen::AngleAxisd(angle, step.head<3>() / angle);
     moved.t = center + step.tail<3>() - moved.R * center;
     fit.X_BA = moved * fit.X_BA;
-    fit.converged = angle * radius + step.tail<3>().norm() < small_mm;
+    fit.converged = angle * radius + step.tail<3>().norm() < settings.small_mm;
   }
   return fit;
 }

@@ -33,12 +33,12 @@ bool SurfacePairs::on_rim(const SurfacePoint& found) const {
 }
 
 std::optional<SurfacePair> SurfacePairs::find(const Eigen::Vector3d& p,
-                                              const Eigen::Vector3d& normal) const {
-  constexpr double cos_60 = 0.5;
+                                              const Eigen::Vector3d& normal,
+                                              double least_cos) const {
   const SurfacePoint found = tree_.signed_nearest(p);
   if (found.triangle < 0 || on_rim(found)) return std::nullopt;
   SurfacePair pair{found.distance, found.point, tree_.pseudonormal(found)};
-  if (pair.normal.dot(normal) < cos_60) return std::nullopt;
+  if (pair.normal.dot(normal) < least_cos) return std::nullopt;
   return pair;
 }
 

@@ -25,8 +25,10 @@ class SurfacePairs {
   /// The mesh must be welded; its triangles face outward.
   explicit SurfacePairs(const TriMesh& surface);
 
-  /// The nearest point of the surface, if its normal is within 60 degrees of `normal` (unit).
-  std::optional<SurfacePair> find(const Eigen::Vector3d& p, const Eigen::Vector3d& normal) const;
+  /// The nearest point of the surface, if its normal is within 60 degrees, or another angle, of
+  /// `normal` (unit).
+  std::optional<SurfacePair> find(const Eigen::Vector3d& p, const Eigen::Vector3d& normal,
+                                  double least_cos = 0.5) const;
 
   const TriangleTree& tree() const { return tree_; }
 

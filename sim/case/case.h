@@ -44,6 +44,8 @@ struct Case {
   std::vector<Muscle> muscles = {};  // empty: default muscles fitted to its landmarks
   std::optional<JawMechanics> mechanics = std::nullopt;  // where measured
   std::vector<Canal> canals = {};                        // that cuts must avoid, where known
+  // The mandible in the bite that was scanned with the dental arches, where there is one.
+  std::optional<Pose> X_CM_bite = std::nullopt;
 
   const Part* find(Role role) const {
     for (const auto& part : parts)

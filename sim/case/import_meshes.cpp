@@ -287,7 +287,9 @@ Landmarks import_landmarks(const ImportRequest& request, const Box& box,
 Case import_meshes(const ImportRequest& request) {
   if (std::none_of(request.files.begin(), request.files.end(),
                    [](const ImportFile& file) { return is_bone(file.role); }))
-    throw InputError("no bone is given; name one with --skull, --maxilla or --mandible");
+    throw InputError(
+        "no bone is given; name one with --skull, --maxilla or --mandible, or import dental scans "
+        "alone with condyle import teeth");
   const SourceFrame& frame = request.source;
 
   std::vector<Surface> surfaces;

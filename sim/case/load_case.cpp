@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "engine/core/error.h"
@@ -168,6 +169,23 @@ CondylarPath load_path(const JsonItem& item) {
   return path;
 }
 
+/// The stored quaternion must be of unit length; its bits are kept.
+Pose load_bite(const JsonItem& item) {
+  constexpr double far_mm = 1000, unit_error = 1e-6;
+  const JsonItem rotation = item.at("rotation"), translation = item.at("translation_mm");
+  for (const auto& [list, size] : {std::pair(&rotation, 4u), std::pair(&translation, 3u)})
+    if (list->size() != size)
+      list->refuse(fmt::format("has {} numbers; it must have {}", list->size(), size));
+  const auto q = [&](std::size_t i) { return rotation.at(i).number(-1.001, 1.001); };
+  const auto t = [&](std::size_t i) { return translation.at(i).number(-far_mm, far_mm); };
+  Pose X_CM;
+  X_CM.R = Eigen::Quaterniond(q(0), q(1), q(2), q(3));
+  X_CM.t = {t(0), t(1), t(2)};
+  if (std::abs(X_CM.R.norm() - 1) > unit_error)
+    rotation.refuse(fmt::format("is no rotation: its length is {:.6g}", X_CM.R.norm()));
+  return X_CM;
+}
+
 MotionParameters load_motion(const JsonItem& item) {
   MotionParameters parameters;
   if (!item.value().is_object()) item.refuse("must be an object of motion parameters");
@@ -276,6 +294,7 @@ Case load_case(const fs::path& given) {
   if (const auto path = root.find("condylar_path")) patient.condylar_path = load_path(*path);
   if (const auto opening = root.find("scan_opening_mm"))
     patient.scan_opening_mm = opening->number(0, max_scan_opening_mm);
+  if (const auto bite = root.find("bite")) patient.X_CM_bite = load_bite(*bite);
   if (const auto muscles = root.find("muscles"))
     patient.muscles = read_muscles(inside(folder, *muscles), patient.notes);
   if (const auto mechanics = root.find("mechanics"))

@@ -65,6 +65,12 @@ Json to_json(const PairRule& rule) {
   return item;
 }
 
+Json bite_json(const Pose& X_CM) {
+  const Eigen::Quaterniond& R = X_CM.R;
+  return {{"rotation", {R.w(), R.x(), R.y(), R.z()}},
+          {"translation_mm", {X_CM.t.x(), X_CM.t.y(), X_CM.t.z()}}};
+}
+
 Json to_json(const Case& patient) {
   Json root = {{"format", case_format},
                {"version", case_version},
@@ -81,6 +87,7 @@ Json to_json(const Case& patient) {
     root["condylar_path"] = {{"forward_mm", patient.condylar_path->forward_mm},
                              {"drop_mm", patient.condylar_path->inferior_mm}};
   if (patient.scan_opening_mm) root["scan_opening_mm"] = *patient.scan_opening_mm;
+  if (const auto& bite = patient.X_CM_bite) root["bite"] = bite_json(*bite);
   if (!patient.muscles.empty()) root["muscles"] = muscles_file;
   if (patient.mechanics) root["mechanics"] = mechanics_file;
   for (const auto& rule : patient.pair_rules) root["contact_pairs"].push_back(to_json(rule));

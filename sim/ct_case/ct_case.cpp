@@ -9,6 +9,7 @@
 #include "engine/segmentation/scan_surfaces.h"
 #include "sim/case/import_checks.h"
 #include "sim/case/soft_landmarks.h"
+#include "sim/case/tooth_labels.h"
 #include "sim/ct_case/tooth_voxels.h"
 
 namespace condyle {
@@ -167,7 +168,7 @@ class CtSegmentation {
       const CarriedPart* carried = made_.fit.find(wanted.role);
       Part part =
           is_teeth(wanted.role) && carried
-              ? teeth_part(std::move(mesh), carried->part)
+              ? with_tooth_labels(std::move(mesh), carried->part)
               : Part{wanted.name, wanted.role, std::move(mesh), {}, default_body(wanted.role)};
       part.name = wanted.name;
       keep(std::move(surface), std::move(part));

@@ -1,8 +1,6 @@
 #include "sim/ct_case/tooth_voxels.h"
 
 #include <algorithm>
-#include <cmath>
-#include <numeric>
 
 #include "engine/core/parallel.h"
 #include "engine/mesh/measure.h"
@@ -36,40 +34,6 @@ void label_teeth(const Volume& volume, const TriMesh& template_teeth, const TriM
         if (to_teeth < around_teeth_mm && to_teeth < around.signed_distance(p)) label = teeth_label;
       }
   });
-}
-
-Part teeth_part(TriMesh mesh, const Part& template_teeth) {
-  Part part{template_teeth.name,
-            template_teeth.role,
-            std::move(mesh),
-            {},
-            default_body(template_teeth.role)};
-  if (part.mesh.empty() || template_teeth.teeth.empty()) return part;
-  const TriangleTree tree(template_teeth.mesh);
-  const auto tooth_of = [&](const Eigen::Vector3i& t) {
-    const Vector3d middle = (part.mesh.vertices[static_cast<std::size_t>(t[0])] +
-                             part.mesh.vertices[static_cast<std::size_t>(t[1])] +
-                             part.mesh.vertices[static_cast<std::size_t>(t[2])]) /
-                            3;
-    const int nearest = tree.nearest(middle).triangle;
-    const auto& teeth = template_teeth.teeth;
-    const auto found = std::find_if(teeth.begin(), teeth.end(), [&](const Tooth& tooth) {
-      return nearest >= tooth.first_triangle &&
-             nearest < tooth.first_triangle + tooth.triangle_count;
-    });
-    return static_cast<std::size_t>(found - teeth.begin());
-  };
-  std::vector<std::vector<Eigen::Vector3i>> of_tooth(template_teeth.teeth.size() + 1);
-  for (const auto& t : part.mesh.triangles) of_tooth[tooth_of(t)].push_back(t);
-  part.mesh.triangles.clear();
-  for (std::size_t i = 0; i < of_tooth.size(); ++i) {
-    const int first = static_cast<int>(part.mesh.triangles.size());
-    part.mesh.triangles.insert(part.mesh.triangles.end(), of_tooth[i].begin(), of_tooth[i].end());
-    if (i < template_teeth.teeth.size() && !of_tooth[i].empty())
-      part.teeth.push_back(
-          {template_teeth.teeth[i].fdi, first, static_cast<int>(of_tooth[i].size())});
-  }
-  return part;
 }
 
 }  // namespace condyle

@@ -1,7 +1,7 @@
 #pragma once
 
+#include "engine/mesh/tri_mesh.h"
 #include "engine/segmentation/bone_voxels.h"
-#include "sim/frame/part.h"
 
 namespace condyle {
 
@@ -9,8 +9,5 @@ namespace condyle {
 /// of the teeth. Depths inside count as negative distances: roots stay with the bone around them.
 void label_teeth(const Volume& volume, const TriMesh& template_teeth, const TriMesh& template_bone,
                  VoxelLabel bone_label, VoxelLabel teeth_label, BoneVoxels& bone, int threads);
-
-/// A part of teeth whose triangles are sorted by the nearest tooth of the template.
-Part teeth_part(TriMesh mesh, const Part& template_teeth);
 
 }  // namespace condyle

@@ -13,6 +13,7 @@
 namespace condyle {
 namespace {
 
+using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr double crown_mm = 16;          // height of the crowns, including the curve of the arch
@@ -22,6 +23,9 @@ constexpr double molar_fraction = 0.58;  // fraction of the arch length in front
 constexpr double molar_behind_mm = 28;
 constexpr double slice_mm = 4, top_mm = 1.5, piece_mm = 1;
 constexpr double steepest_cos = 0.8;  // limit of the inclination of the occlusal plane: 37 degrees
+
+// Normal incisors, mm; the norms of cephalometry.cpp.
+constexpr double normal_overjet_mm = 2.5, normal_overbite_mm = 2.5;
 
 /// Finds one arch; "height" is measured towards the opposing arch.
 class ArchReader {
@@ -171,6 +175,16 @@ class ArchReader {
   double front_mm_ = 0, back_mm_ = 0;  // y
 };
 
+/// Axes of an arch: to the left molar, back and up in its occlusal plane.
+Matrix3d axes_of(const Arch& arch) {
+  const Vector3d left = (arch.molars[0] - arch.molars[1]).normalized();
+  const Vector3d back = 0.5 * (arch.molars[0] + arch.molars[1]) - arch.edge;
+  const Vector3d up = left.cross(back).normalized();
+  Matrix3d axes;
+  axes << left, up.cross(left), up;
+  return axes;
+}
+
 }  // namespace
 
 Arches find_arches(const Case& patient) {
@@ -206,6 +220,14 @@ Arches find_arches(const Case& patient) {
   arches.left = (across - arches.up * arches.up.dot(across)).normalized();
   arches.front = arches.left.cross(arches.up);
   return arches;
+}
+
+Pose normal_relation(const Arches& arches) {
+  const Matrix3d upper = axes_of(arches.upper);
+  const Matrix3d turn = upper * axes_of(arches.lower).transpose();
+  const Vector3d edge =
+      arches.upper.edge + upper * Vector3d(0, normal_overjet_mm, normal_overbite_mm);
+  return {Eigen::Quaterniond(turn), edge - turn * arches.lower.edge};
 }
 
 }  // namespace condyle

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/math/pose.h"
 #include "engine/mesh/measure.h"
 #include "sim/case/case.h"
 
@@ -36,5 +37,9 @@ struct Arches {
 /// of it on whose surface the incisal landmark lies. The case must outlive the result. throws:
 /// InputError naming what is missing.
 Arches find_arches(const Case& patient);
+
+/// The pose of the lower arch with normal incisors (overjet and overbite 2.5 mm) under the upper
+/// one, on a common midline and with parallel occlusal planes.
+Pose normal_relation(const Arches& arches);
 
 }  // namespace condyle

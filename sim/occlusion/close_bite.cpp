@@ -26,8 +26,43 @@ constexpr double still_mm = 1e-6;
 constexpr int max_steps = 400;
 constexpr double open_step_mm = 0.5, max_open_mm = 30;
 constexpr double same_mm = 0.1;
+constexpr double slipped_mm = 15;  // displacement from the start of an arch without a bite
 constexpr int max_rounds = 4;
 constexpr std::size_t refined = 3;  // coarse bites that are refined
+
+/// Adds bites to a list that is sorted by energy, without those that are in it.
+void add_distinct(const BiteModel& model, const std::vector<RestingPose>& more,
+                  std::vector<RestingPose>& found) {
+  found.insert(found.end(), more.begin(), more.end());
+  std::stable_sort(found.begin(), found.end(),
+                   [](const auto& a, const auto& b) { return a.work < b.work; });
+  std::vector<RestingPose> distinct;
+  for (const auto& bite : found)
+    if (std::none_of(distinct.begin(), distinct.end(), [&](const auto& kept) {
+          return model.max_displacement_mm(kept.X_CM, bite.X_CM) < same_mm;
+        }))
+      distinct.push_back(bite);
+  found = std::move(distinct);
+}
+
+/// Drops poses in which the lower arch has slipped off the upper one, which has the least energy of
+/// all; of these alone, the one nearest to the start stays.
+void drop_slipped(const BiteModel& model, const Pose& start, std::vector<RestingPose>& poses) {
+  const auto moved = [&](const RestingPose& pose) {
+    return model.max_displacement_mm(pose.X_CM, start);
+  };
+  const RestingPose nearest =
+      *std::min_element(poses.begin(), poses.end(),
+                        [&](const auto& a, const auto& b) { return moved(a) < moved(b); });
+  std::erase_if(poses, [&](const auto& pose) { return !(moved(pose) < slipped_mm); });
+  if (poses.empty()) poses.push_back(nearest);
+}
+
+[[noreturn]] void refuse_overlap() {
+  throw InputError(fmt::format(
+      "the arches overlap so deeply at the start that {:.0f} mm of opening do not separate them",
+      max_open_mm));
+}
 
 DistanceField field_of(const Arch& arch, const OcclusionSettings& settings) {
   return cached_field(
@@ -160,25 +195,10 @@ std::vector<RestingPose> find_bites(const BiteModel& model, const Pose& start,
                                     const OcclusionSettings& settings, int& starts,
                                     const Progress& progress) {
   std::vector<RestingPose> found;
-  const auto add = [&](const std::vector<RestingPose>& more) {
-    found.insert(found.end(), more.begin(), more.end());
-    std::stable_sort(found.begin(), found.end(),
-                     [](const auto& a, const auto& b) { return a.work < b.work; });
-    std::vector<RestingPose> distinct;
-    for (const auto& bite : found)
-      if (std::none_of(distinct.begin(), distinct.end(), [&](const auto& kept) {
-            return model.max_displacement_mm(kept.X_CM, bite.X_CM) < same_mm;
-          }))
-        distinct.push_back(bite);
-    found = std::move(distinct);
-  };
+  const auto add = [&](const std::vector<RestingPose>& more) { add_distinct(model, more, found); };
   report(progress, "closing", 0.5);
   const auto open = model.opened(start);
-  if (!open)
-    throw InputError(fmt::format(
-        "the arches overlap so deeply at the start that {:.0f} mm of opening do not separate "
-        "them",
-        max_open_mm));
+  if (!open) refuse_overlap();
   add({model.coarse(*open, settings.threads)});
   starts = 1;
   // Restarts near the best bite until it remains the best.
@@ -209,6 +229,35 @@ std::vector<RestingPose> find_bites(const BiteModel& model, const Pose& start,
   for (const auto& bite : coarse)
     add({model.fine(model.opened(bite.X_CM).value_or(bite.X_CM), settings.threads)});
   return found;
+}
+
+std::vector<RestingPose> find_bites_from_grid(const BiteModel& model, const Pose& start,
+                                              const OcclusionSettings& settings, int& starts,
+                                              const Progress& progress) {
+  constexpr double sideways_mm = 2, forward_mm = 3, turn_rad = 2 * std::numbers::pi / 180;
+  constexpr std::size_t kept = 6;
+  std::vector<Pose> froms;
+  for (const double left : {0.0, -sideways_mm, sideways_mm})
+    for (const double front : {0.0, -forward_mm, forward_mm})
+      for (const double yaw : {0.0, -turn_rad, turn_rad})
+        if (const auto from = model.opened(model.beside(start, {left, front, 0}, yaw)))
+          froms.push_back(*from);
+  if (froms.empty()) refuse_overlap();
+  report(progress, "closing from a grid", 0.5);
+  std::vector<RestingPose> coarse(froms.size()), found, refined_bites;
+  parallel_for(froms.size(), settings.threads,
+               [&](std::size_t i) { coarse[i] = model.coarse(froms[i], 1); });
+  starts = static_cast<int>(froms.size());
+  drop_slipped(model, start, coarse);
+  add_distinct(model, coarse, found);
+  if (found.size() > kept) found.resize(kept);
+  report(progress, "refining", 0.8);
+  std::vector<RestingPose> fine;
+  for (const auto& bite : found)
+    fine.push_back(model.fine(model.opened(bite.X_CM).value_or(bite.X_CM), settings.threads));
+  drop_slipped(model, start, fine);
+  add_distinct(model, fine, refined_bites);
+  return refined_bites;
 }
 
 }  // namespace condyle

@@ -61,4 +61,11 @@ std::vector<RestingPose> find_bites(const BiteModel& model, const Pose& start,
                                     const OcclusionSettings& settings, int& starts,
                                     const Progress& progress = {});
 
+/// Closes from a grid of poses about the start: 2 mm sideways, 3 mm forward and back, 2 degrees
+/// about the vertical axis. The six of least energy in which the arch has not slipped off, refined,
+/// at least 0.1 mm apart. throws: InputError when none of them can be opened.
+std::vector<RestingPose> find_bites_from_grid(const BiteModel& model, const Pose& start,
+                                              const OcclusionSettings& settings, int& starts,
+                                              const Progress& progress = {});
+
 }  // namespace condyle

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -40,6 +41,14 @@ void inspect_pairs(const Case& patient, const ContactSet& set, double max_overla
                                  : "they are apart"));
     }
   }
+}
+
+/// By which bites of different starts are ranked, N mm: the work, and what uneven load counts.
+double grid_charge(const Bite& bite, const OcclusionSettings& settings) {
+  constexpr double uneven_mm = 1, unstable_mm = 5;  // of closing that it is worth
+  const double uneven = 2 * std::abs(bite.left_fraction - 0.5);
+  return bite.rest.work +
+         settings.closing_force_N * (uneven_mm * uneven + (bite.stable ? 0 : unstable_mm));
 }
 
 std::string why_unstable(const Bite& bite, const OcclusionSettings& settings) {
@@ -91,11 +100,11 @@ BiteFinder::BiteFinder(const Case& patient, const OcclusionSettings& settings,
 BiteFinder::~BiteFinder() = default;
 BiteFinder::BiteFinder(BiteFinder&&) noexcept = default;
 
-Bite BiteFinder::find(const Pose& start, const Progress& progress) const {
-  const auto& [patient, settings, arches, model, all_contacts] = *state_;
+void BiteFinder::check_start(const Pose& start) const {
   if (!start.R.coeffs().allFinite() || !start.t.allFinite())
     throw InputError("the start is not a finite pose; give numbers");
-  for (const auto& p : {arches.lower.edge, arches.lower.molars[0], arches.lower.molars[1]})
+  const Arch& lower = state_->arches.lower;
+  for (const auto& p : {lower.edge, lower.molars[0], lower.molars[1]})
     if (const double shift_mm = (start * p - p).norm(); !(shift_mm <= farthest_start_mm))
       throw InputError(fmt::format(
           "at the start the lower teeth are {:.3g} mm from their position in the case; at most "
@@ -107,7 +116,10 @@ Bite BiteFinder::find(const Pose& start, const Progress& progress) const {
         fmt::format("at the start the lower teeth are rotated by {:.3g} degrees; at most {:.0f} "
                     "degrees are allowed",
                     turn_deg, farthest_turn_deg));
+}
 
+Bite BiteFinder::measured(const RestingPose& rest, const Pose& start) const {
+  const auto& [patient, settings, arches, model, all_contacts] = *state_;
   Bite bite;
   bite.notes = arches.notes;
   bite.upper = arches.upper.part->name;
@@ -115,11 +127,8 @@ Bite BiteFinder::find(const Pose& start, const Progress& progress) const {
   bite.up = arches.up;
   bite.midline_mm = arches.midline_mm;
   bite.upper_edge = arches.upper.edge;
-  auto found = find_bites(model, start, settings, bite.starts, progress);
-  bite.rest = found.front();
+  bite.rest = rest;
   bite.rest.converged = bite.rest.residual_N < residual_fraction * settings.closing_force_N;
-  bite.others.assign(found.begin() + 1, found.end());
-  report(progress, "contacts", 0.9);
   const Pose& X_CM = bite.rest.X_CM;
   bite.contacts = find_contacts(arches, model, X_CM);
   bite.teeth = tooth_loads(arches, bite.contacts);
@@ -148,6 +157,36 @@ Bite BiteFinder::find(const Pose& start, const Progress& progress) const {
   bite.unstable_because = why_unstable(bite, settings);
   bite.stable = bite.unstable_because.empty();
   return bite;
+}
+
+Bite BiteFinder::find(const Pose& start, const Progress& progress) const {
+  check_start(start);
+  int starts = 0;
+  const auto found = find_bites(state_->model, start, state_->settings, starts, progress);
+  report(progress, "contacts", 0.9);
+  Bite bite = measured(found.front(), start);
+  bite.others.assign(found.begin() + 1, found.end());
+  bite.starts = starts;
+  return bite;
+}
+
+std::vector<Bite> BiteFinder::find_from_grid(const Pose& start, const Progress& progress) const {
+  constexpr std::size_t shown = 3;
+  check_start(start);
+  const OcclusionSettings& settings = state_->settings;
+  int starts = 0;
+  const auto found = find_bites_from_grid(state_->model, start, settings, starts, progress);
+  std::vector<Bite> bites;
+  for (const RestingPose& rest : found) {
+    bites.push_back(measured(rest, start));
+    bites.back().starts = starts;
+    report(progress, "contacts", 0.9);
+  }
+  const auto charge = [&](const Bite& bite) { return grid_charge(bite, settings); };
+  std::stable_sort(bites.begin(), bites.end(),
+                   [&](const Bite& a, const Bite& b) { return charge(a) < charge(b); });
+  if (bites.size() > shown) bites.resize(shown);
+  return bites;
 }
 
 }  // namespace condyle

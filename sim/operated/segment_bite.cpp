@@ -13,12 +13,6 @@
 namespace condyle {
 namespace {
 
-using Eigen::Matrix3d;
-using Eigen::Vector3d;
-
-// Normal incisors, mm; the norms of cephalometry.cpp.
-constexpr double overjet_mm = 2.5, overbite_mm = 2.5;
-
 Plan without_move(Plan plan, const std::string& segment) {
   std::erase_if(plan.steps, [&](const PlanStep& step) {
     const auto* move = std::get_if<MoveStep>(&step.action);
@@ -27,28 +21,15 @@ Plan without_move(Plan plan, const std::string& segment) {
   return plan;
 }
 
-/// Axes of an arch: to the left molar, back and up in its occlusal plane.
-Matrix3d axes_of(const Arch& arch) {
-  const Vector3d left = (arch.molars[0] - arch.molars[1]).normalized();
-  const Vector3d back = 0.5 * (arch.molars[0] + arch.molars[1]) - arch.edge;
-  const Vector3d up = left.cross(back).normalized();
-  Matrix3d axes;
-  axes << left, up.cross(left), up;
-  return axes;
-}
-
-/// The lower arch with normal incisors under the upper one.
-Pose normal_relation(const Arches& arches) {
-  const Matrix3d upper = axes_of(arches.upper);
-  const Matrix3d turn = upper * axes_of(arches.lower).transpose();
-  const Vector3d edge = arches.upper.edge + upper * Vector3d(0, overjet_mm, overbite_mm);
-  return {Eigen::Quaterniond(turn), edge - turn * arches.lower.edge};
-}
-
 }  // namespace
 
 SegmentBite find_segment_bite(const Case& patient, const Plan& plan, const std::string& segment,
-                              OcclusionSettings settings, const Progress& progress) {
+                              OcclusionSettings settings, const Progress& progress,
+                              SegmentBiteStart start) {
+  if (start == SegmentBiteStart::scanned && !patient.X_CM_bite)
+    throw InputError(
+        "the case holds no scanned bite; import dental scans in occlusion with condyle "
+        "import teeth");
   report(progress, "replaying the plan", 0);
   const Operated operated = apply_plan(patient, without_move(plan, segment));
   const BodyTree& bodies = operated.patient.bodies;
@@ -73,7 +54,11 @@ SegmentBite find_segment_bite(const Case& patient, const Plan& plan, const std::
   for (const char* condyle : {"left_condyle", "right_condyle"})
     planned.landmarks.points.erase(condyle);  // no joint holds the segment
   found.lower = lower;
-  found.start = normal_relation(find_arches(planned));
+  // Each arch was moved by the plan from where the scanned bite relates them.
+  found.start = start == SegmentBiteStart::normal
+                    ? normal_relation(find_arches(planned))
+                    : operated.poses[jaw.upper_arch] * *patient.X_CM_bite *
+                          operated.poses[jaw.lower_arch].inverse();
   found.bite = BiteFinder(planned, settings, progress).find(found.start, progress);
   const Pose& X = found.bite.rest.X_CM;
   // The segment's rest is the uncut one; its parents may have been moved with it.

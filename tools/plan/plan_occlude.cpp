@@ -15,6 +15,7 @@ namespace {
 struct PlanOccludeOptions {
   std::filesystem::path file;
   std::string segment, patient;
+  bool scanned = false;
 };
 
 std::string bite_text(const SegmentBite& found) {
@@ -36,7 +37,8 @@ int run_plan_occlude(const PlanOccludeOptions& options, const CommonOptions& com
   settings.cache = field_cache_folder();
   ProgressBar bar(common);
   const SegmentBite found =
-      find_segment_bite(patient, plan, options.segment, settings, bar.callback());
+      find_segment_bite(patient, plan, options.segment, settings, bar.callback(),
+                        options.scanned ? SegmentBiteStart::scanned : SegmentBiteStart::normal);
   bar.clear();
   if (!found.bite.stable) {
     fmt::print(stderr, "condyle: {} is not placed: no stable bite, {}\n", options.segment,
@@ -60,6 +62,9 @@ void add_plan_occlude(Commands& commands, CLI::App& plan) {
   add_plan_argument(command, options->file);
   command.add_option("SEGMENT", options->segment, "Its name")->required();
   add_plan_case(command, options->patient);
+  command.add_flag("--scanned-bite", options->scanned,
+                   "Start from the bite that was scanned with the dental arches (condyle import "
+                   "teeth), such as one set by hand, instead of normal incisors");
 }
 
 }  // namespace condyle

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "engine/mesh/measure.h"
+#include "engine/registration/best_fit.h"
 #include "engine/registration/rigid_fit.h"
 #include "engine/registration/surface_fit.h"
 
@@ -114,6 +115,53 @@ TEST(SurfaceFit, WithoutPartnersNothingIsFitted) {
   const SurfaceFit fit = fit_to_surface(points.points, points.normals, pairs);
   EXPECT_FALSE(fit.converged);
   EXPECT_EQ(fit.pairs, 0);
+}
+
+TEST(BestFit, FindsAPoseFarFromEveryStartButOne) {
+  const TriMesh surface = hills();
+  const SurfacePairs pairs(surface);
+  const Pose X_AB = pose_of(75, {0, 0.1, 1}, {30, -20, 4});
+  const Points middle = middle_of(surface, X_AB);
+  const OrientedPoints points{middle.points, middle.normals};
+  EXPECT_EQ(points.thinned(100).size(), 100u);
+  std::vector<Pose> starts;
+  for (int deg = 0; deg < 360; deg += 20) {
+    Pose turn = pose_of(deg, {0, 0, 1}, {0, 0, 0});
+    turn.t = -(turn.R * X_AB.t);
+    starts.push_back(turn);
+  }
+  const auto ranked = rank_starts(points, pairs, starts);
+  ASSERT_FALSE(ranked.empty());
+  const BestFit best = best_fit_to_surface(points, pairs, ranked.front().X_BA);
+  EXPECT_LT(best.residual.trimmed_mean_mm, 1e-3);
+  EXPECT_EQ(best.residual.without_partner, 0);
+  for (const Vector3d& p : points.points)
+    ASSERT_LT((best.fit.X_BA * p - X_AB.inverse() * p).norm(), 1e-3);
+  BestFitSettings one;
+  one.fit.threads = 1;
+  const BestFit again = best_fit_to_surface(points, pairs, ranked.front().X_BA, one);
+  EXPECT_EQ(again.fit.X_BA.t, best.fit.X_BA.t);
+  EXPECT_EQ(rank_starts(points, pairs, starts, one).front().X_BA.t, ranked.front().X_BA.t);
+}
+
+TEST(BestFit, PlanesOfExactPointsSurviveANoisySurface) {
+  TriMesh surface = hills();
+  Points points = middle_of(surface, pose_of(4, {0.3, 1, -0.4}, {2, -2, 3}));
+  unsigned state = 1;
+  for (auto& v : surface.vertices) {
+    state = 1664525u * state + 1013904223u;
+    v.z() += 3.0 * (state / 4294967296.0 - 0.5);
+  }
+  SurfaceFitSettings settings;
+  settings.planes_of_points = true;
+  settings.least_cos = 0.2;
+  const SurfaceFit fit =
+      fit_to_surface(points.points, points.normals, SurfacePairs(surface), {}, settings);
+  const Pose X_BA = pose_of(4, {0.3, 1, -0.4}, {2, -2, 3}).inverse();
+  double largest = 0;
+  for (const Vector3d& p : points.points)
+    largest = std::max(largest, (fit.X_BA * p - X_BA * p).norm());
+  EXPECT_LT(largest, 0.4);  // noise of 0.9 mm on 1800 points
 }
 
 TEST(SurfacePairs, SignSideAndRim) {

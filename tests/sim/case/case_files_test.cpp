@@ -83,6 +83,29 @@ TEST(CaseFiles, LoadingIsBitIdenticalToSaving) {
   EXPECT_EQ(load_case(folder.path() / "a" / "case" / "case.json").name, saved.name);
 }
 
+TEST(CaseFiles, TheScannedBiteIsStoredAndChecked) {
+  const TempFolder folder;
+  Case saved = sample();
+  const Eigen::Affine3d moved = test::arbitrary_pose(3);
+  saved.X_CM_bite = Pose{Eigen::Quaterniond(moved.rotation()).normalized(), moved.translation()};
+  save_case(saved, folder.path() / "case");
+  const Case loaded = load_case(folder.path() / "case");
+  ASSERT_TRUE(loaded.X_CM_bite);
+  EXPECT_EQ(loaded.X_CM_bite->t, saved.X_CM_bite->t);
+  EXPECT_EQ(loaded.X_CM_bite->R.coeffs(), saved.X_CM_bite->R.coeffs());
+  const fs::path file = folder.path() / "case" / "case.json";
+  const json root = json::parse(read_file(file));
+  for (const auto& [bite, words] :
+       {std::pair(json{{"rotation", {1, 1, 0, 0}}, {"translation_mm", {0, 0, 0}}}, "no rotation"),
+        std::pair(json{{"rotation", {1, 0, 0, 0}}, {"translation_mm", {0, 0}}}, "has 2 numbers"),
+        std::pair(json{{"rotation", {1, 0, 0, 0}}}, "translation_mm")}) {
+    json changed = root;
+    changed["bite"] = bite;
+    write_file(file, changed.dump());
+    expect_words(refusal(folder.path() / "case"), {"case.json", "bite", words});
+  }
+}
+
 /// The sample with two free parts and rules.
 Case sample_with_free_parts() {
   Case patient = sample();

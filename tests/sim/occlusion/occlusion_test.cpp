@@ -106,6 +106,21 @@ TEST(CloseBite, BuiltBiteIsFoundFromTwentyStartsUpToThreeMillimetresAndDegreesAw
   EXPECT_GE(far, 10);
 }
 
+TEST(CloseBite, AGridOfStartsFindsTheBiteFromAnArchInNoRelation) {
+  const Pose away = displaced_from_rest(builtin(), {1.5, 2, -4}, {1, 0, 2});
+  const auto bites = finder().find_from_grid(away);
+  ASSERT_FALSE(bites.empty());
+  EXPECT_LE(bites.size(), 3u);
+  const TriMesh& lower = builtin().find(Role::lower_teeth)->mesh;
+  EXPECT_LT(farthest(lower, bites.front().rest.X_CM, {}), 0.1);
+  EXPECT_TRUE(bites.front().stable) << bites.front().unstable_because;
+  EXPECT_EQ(bites.front().starts, 27);
+  for (std::size_t i = 1; i < bites.size(); ++i)
+    EXPECT_GT(farthest(lower, bites[i].rest.X_CM, bites.front().rest.X_CM), 0.1);
+  // With normal incisors the arch lies near its bite.
+  EXPECT_LT(farthest(lower, normal_relation(find_arches(builtin())), {}), 3);
+}
+
 TEST(Arches, OfASplitJawAreThoseOfTheBodiesThatCarryThem) {
   const Arches native = find_arches(builtin());
   Case split = builtin();

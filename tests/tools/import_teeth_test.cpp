@@ -1,0 +1,68 @@
+// `import teeth`: scans in a case and alone, and what refuses them.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/program.h"
+
+namespace condyle::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+void expect_refusal(const Outcome& outcome, const std::string& words) {
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
+  EXPECT_NE(outcome.err.find(words), std::string::npos) << outcome.err;
+}
+
+}  // namespace
+
+TEST(ImportTeeth, ScansReplaceTheCrownsOrMakeACaseAlone) {
+  const Folder folder;
+  ASSERT_EQ(condyle({"sample", "--out", folder / "sample"}).code, 0);
+  const std::string upper = folder / "sample/upper.stl", lower = folder / "sample/lower.stl";
+  const auto in_case = condyle({"import", "teeth", "built-in:class-iii", "--upper", upper, "--out",
+                                folder / "teeth", "--json"});
+  ASSERT_EQ(in_case.code, 0) << in_case.err;
+  const auto json = nlohmann::json::parse(in_case.out);
+  EXPECT_LT(json["upper"]["mean_mm"].get<double>(), 0.05);
+  EXPECT_LT(json["upper"]["halves_mm"].get<double>(), 0.1);
+  EXPECT_FALSE(json.contains("bite"));
+  EXPECT_FALSE(json.contains("lower"));
+
+  const auto alone =
+      condyle({"import", "teeth", "--upper", upper, "--lower", lower, "--out", folder / "arches"});
+  ASSERT_EQ(alone.code, 0) << alone.err;
+  EXPECT_NE(alone.err.find("the scans lie in occlusion"), std::string::npos) << alone.err;
+  EXPECT_NE(alone.err.find("Bonwill"), std::string::npos);
+  const auto stored = nlohmann::json::parse(read_text(folder / "arches/case.json"));
+  EXPECT_EQ(stored["bite"]["rotation"], nlohmann::json({1.0, 0.0, 0.0, 0.0}));
+  EXPECT_EQ(stored["parts"].size(), 2u);
+  const auto bite = condyle({"occlude", folder / "arches", "--json", "--quiet"});
+  ASSERT_EQ(bite.code, 0) << bite.err;
+  const auto found = nlohmann::json::parse(bite.out);
+  EXPECT_EQ(found["start"], "the scanned bite of the case");
+  EXPECT_LT(found["moved_from_start_mm"].get<double>(), 0.3);
+}
+
+TEST(ImportTeeth, WrongFilesAreRefusedAndNothingIsWritten) {
+  const Folder folder;
+  write_text(folder / "empty.stl", "");
+  write_text(folder / "bytes.ply", "no surface at all");
+  const std::string out = folder / "out";
+  for (const char* file : {"empty.stl", "bytes.ply", "absent.obj"})
+    expect_refusal(condyle({"import", "teeth", "--upper", folder / file, "--out", out}), file);
+  expect_refusal(condyle({"import", "teeth", "--out", out}), "--upper or --lower");
+  write_box_patient(folder.path());
+  expect_refusal(condyle({"import", "teeth", "--upper", folder / "maxilla.stl", "--out", out}),
+                 "maxilla.stl");
+  expect_refusal(condyle({"import", "teeth", "--lower", folder / "empty.stl", "--upper-points",
+                          folder / "marks.csv", "--out", out}),
+                 "--upper-points needs --upper");
+  EXPECT_FALSE(fs::exists(out));
+}
+
+}  // namespace condyle::test
