@@ -7,6 +7,8 @@
 
 #include "engine/core/error.h"
 #include "engine/mesh/topology.h"
+#include "engine/mesh/triangle_tree.h"
+#include "engine/mesh/unfold.h"
 #include "engine/segmentation/scan_surfaces.h"
 #include "engine/segmentation/split_bones.h"
 #include "sim/phantom/phantom.h"
@@ -121,6 +123,34 @@ TEST(Segmentation, WorksOnTurnedAxesAndFlatVoxels) {
   const CtScan scan = scan_ct(ScannedHead(), settings);
   EXPECT_LT(scan.volume.axes.determinant(), 0);
   expect_bones_right(scan, Segmented(scan.volume));
+}
+
+TEST(Segmentation, BonesThatTouchDoNotPassThroughEachOther) {
+  constexpr double touching_mm = 0.1, least_depth = 0.25;  // voxels
+  const CtScan scan = scan_ct(ScannedHead({}, touching_mm), jaw_scan_settings());
+  const Segmented segments(scan.volume);
+  std::vector<TriMesh> bones;
+  for (const VoxelLabel label : {skull_label, mandible_label}) {
+    bones.push_back(bone_surface(scan.volume, segments.bone, label,
+                                 {.target_triangles = 0, .threads = threads})
+                        .mesh);
+    TriMesh& mesh = bones.back();
+    EXPECT_TRUE(inspect(mesh).closed());
+    const int folds = unfold(mesh, {.rounds = 0});
+    EXPECT_LT(folds, 20) << "of " << mesh.triangles.size() << " triangles";
+  }
+  std::size_t deep = 0, near = 0;
+  for (const auto& [one, other] : {std::pair(0, 1), std::pair(1, 0)}) {
+    const TriangleTree tree(bones[static_cast<std::size_t>(other)]);
+    for (const auto& p : bones[static_cast<std::size_t>(one)].vertices) {
+      const SurfacePoint at = tree.signed_nearest(p, 1);
+      if (at.triangle < 0) continue;
+      ++near;
+      deep += at.distance < -least_depth;
+    }
+  }
+  EXPECT_GT(near, 100u);
+  EXPECT_EQ(deep, 0u) << "of " << near;
 }
 
 TEST(Segmentation, FindsTheSkin) {
