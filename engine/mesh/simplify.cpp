@@ -13,12 +13,28 @@
 namespace condyle {
 namespace {
 
-/// Edge collapses can leave two triangles back to back on the same corners: a flap without
-/// thickness. Both are removed; dropping one would leave a hole.
-void cancel_flaps(TriMesh& mesh) {
-  std::vector<std::array<int, 4>> keys(mesh.triangles.size());
+TriMesh collapsed(const TriMesh& mesh, const std::vector<float>& positions,
+                  const std::vector<unsigned int>& indices, int target) {
+  std::vector<unsigned int> kept(indices.size());
+  kept.resize(meshopt_simplify(kept.data(), indices.data(), indices.size(), positions.data(),
+                               mesh.vertices.size(), 3 * sizeof(float),
+                               3 * static_cast<std::size_t>(target), 1.0f, 0, nullptr));
+  TriMesh result{mesh.vertices, {}, mesh.colors};
+  result.triangles.reserve(kept.size() / 3);
+  for (std::size_t i = 0; i + 2 < kept.size(); i += 3)
+    result.triangles.emplace_back(static_cast<int>(kept[i]), static_cast<int>(kept[i + 1]),
+                                  static_cast<int>(kept[i + 2]));
+  drop_flaps(result.triangles);
+  drop_unreferenced(result);
+  return result;
+}
+
+}  // namespace
+
+void drop_flaps(std::vector<Eigen::Vector3i>& triangles) {
+  std::vector<std::array<int, 4>> keys(triangles.size());
   for (std::size_t i = 0; i < keys.size(); ++i) {
-    std::copy_n(mesh.triangles[i].data(), 3, keys[i].begin());
+    std::copy_n(triangles[i].data(), 3, keys[i].begin());
     std::sort(keys[i].begin(), keys[i].begin() + 3);
     keys[i][3] = static_cast<int>(i);
   }
@@ -32,27 +48,9 @@ void cancel_flaps(TriMesh& mesh) {
     }
   std::size_t kept = 0;
   for (std::size_t i = 0; i < gone.size(); ++i)
-    if (!gone[i]) mesh.triangles[kept++] = mesh.triangles[i];
-  mesh.triangles.resize(kept);
+    if (!gone[i]) triangles[kept++] = triangles[i];
+  triangles.resize(kept);
 }
-
-TriMesh collapsed(const TriMesh& mesh, const std::vector<float>& positions,
-                  const std::vector<unsigned int>& indices, int target) {
-  std::vector<unsigned int> kept(indices.size());
-  kept.resize(meshopt_simplify(kept.data(), indices.data(), indices.size(), positions.data(),
-                               mesh.vertices.size(), 3 * sizeof(float),
-                               3 * static_cast<std::size_t>(target), 1.0f, 0, nullptr));
-  TriMesh result{mesh.vertices, {}, mesh.colors};
-  result.triangles.reserve(kept.size() / 3);
-  for (std::size_t i = 0; i + 2 < kept.size(); i += 3)
-    result.triangles.emplace_back(static_cast<int>(kept[i]), static_cast<int>(kept[i + 1]),
-                                  static_cast<int>(kept[i + 2]));
-  cancel_flaps(result);
-  drop_unreferenced(result);
-  return result;
-}
-
-}  // namespace
 
 TriMesh simplify(const TriMesh& mesh, int target_triangles) {
   const int count = static_cast<int>(mesh.triangles.size());

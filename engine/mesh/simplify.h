@@ -13,6 +13,10 @@ namespace condyle {
 /// manifold: where the edge collapses would break it, the result keeps more triangles.
 TriMesh simplify(const TriMesh& mesh, int target_triangles);
 
+/// Removes pairs of triangles back to back on the same corners, flaps without thickness, which edge
+/// collapses can leave; dropping one of them would leave a hole.
+void drop_flaps(std::vector<Eigen::Vector3i>& triangles);
+
 /// What becomes of the open rims of a surface.
 enum class Rims { coarser, fixed };
 

@@ -24,27 +24,9 @@ constexpr std::int16_t beyond_hu = -1024;
 
 /// Voxels around the cells of the head that are brighter on average than soft tissue.
 VoxelBox bright_box(const Volume& volume, const HeadRegion& head, double above_hu) {
-  std::array<int, 3> low, high = {-1, -1, -1};
-  low.fill(std::numeric_limits<int>::max());
-  std::size_t c = 0;
-  for (int k = 0; k < head.size[2]; ++k)
-    for (int j = 0; j < head.size[1]; ++j)
-      for (int i = 0; i < head.size[0]; ++i, ++c) {
-        if (head.mean[c] < above_hu || head.head[c] != 1) continue;
-        const std::array<int, 3> at = {i, j, k};
-        for (std::size_t a = 0; a < 3; ++a) {
-          low[a] = std::min(low[a], at[a]);
-          high[a] = std::max(high[a], at[a]);
-        }
-      }
-  VoxelBox box;
-  if (high[0] < 0) return box;
-  for (std::size_t a = 0; a < 3; ++a) {
-    const int margin = 2 * head.cell[a] + 2;
-    box.low[a] = low[a] * head.cell[a] - margin;
-    box.size[a] = (high[a] + 1) * head.cell[a] + margin - box.low[a];
-  }
-  return box.within(whole_box(volume).grown(1));
+  return box_of_cells(
+      volume, head,
+      [&](std::size_t cell) { return head.mean[cell] >= above_hu && head.head[cell] == 1; }, 2, 2);
 }
 
 /// The values in a box, blurred; air beyond the volume.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "engine/core/error.h"
 #include "engine/core/parallel.h"
@@ -280,6 +281,32 @@ HeadRegion find_head(const Volume& volume, const TissueLevels& levels, const std
   mark_edge(region, solid);
   report(progress, "finding the head", 1);
   return region;
+}
+
+VoxelBox box_of_cells(const Volume& volume, const HeadRegion& head,
+                      const std::function<bool(std::size_t)>& holds, int margin_cells,
+                      int margin_voxels) {
+  std::array<int, 3> low, high = {-1, -1, -1};
+  low.fill(std::numeric_limits<int>::max());
+  std::size_t cell = 0;
+  for (int k = 0; k < head.size[2]; ++k)
+    for (int j = 0; j < head.size[1]; ++j)
+      for (int i = 0; i < head.size[0]; ++i, ++cell) {
+        if (!holds(cell)) continue;
+        const std::array<int, 3> at = {i, j, k};
+        for (std::size_t a = 0; a < 3; ++a) {
+          low[a] = std::min(low[a], at[a]);
+          high[a] = std::max(high[a], at[a]);
+        }
+      }
+  VoxelBox box;
+  if (high[0] < 0) return box;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const int margin = margin_cells * head.cell[a] + margin_voxels;
+    box.low[a] = low[a] * head.cell[a] - margin;
+    box.size[a] = (high[a] + 1) * head.cell[a] + margin - box.low[a];
+  }
+  return box.within(whole_box(volume).grown(1));
 }
 
 }  // namespace condyle

@@ -2,10 +2,12 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "engine/core/progress.h"
 #include "engine/segmentation/tissue_levels.h"
+#include "engine/segmentation/voxel_box.h"
 #include "engine/volume/volume.h"
 
 namespace condyle {
@@ -34,5 +36,11 @@ struct HeadRegion {
 /// throws: InputError naming the scan when nothing in it is as thick as a head.
 HeadRegion find_head(const Volume& volume, const TissueLevels& levels, const std::string& name,
                      int threads, const Progress& progress = {});
+
+/// The voxels of the cells that a test of their numbers holds for, with a margin of so many cells
+/// and voxels, at most one voxel beyond the volume. Empty where it holds for none.
+VoxelBox box_of_cells(const Volume& volume, const HeadRegion& head,
+                      const std::function<bool(std::size_t)>& holds, int margin_cells,
+                      int margin_voxels);
 
 }  // namespace condyle

@@ -2,7 +2,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <numeric>
 
 #include "engine/core/parallel.h"
@@ -11,8 +10,8 @@
 #include "engine/mesh/repair.h"
 #include "engine/mesh/simplify.h"
 #include "engine/mesh/topology.h"
-#include "engine/mesh/unfold.h"
 #include "engine/mesh/triangle_tree.h"
+#include "engine/mesh/unfold.h"
 
 namespace condyle {
 namespace {
@@ -43,28 +42,6 @@ void drop_small_pieces(TriMesh& mesh, double least_mm3) {
       mesh.triangles[kept++] = mesh.triangles[t];
   mesh.triangles.resize(kept);
   drop_unreferenced(mesh);
-}
-
-/// Removes pairs of triangles back to back, which collapsed edges leave: flaps without thickness.
-void cancel_flat_pairs(std::vector<Vector3i>& triangles) {
-  std::vector<std::array<int, 4>> keys(triangles.size());
-  for (std::size_t t = 0; t < keys.size(); ++t) {
-    std::copy_n(triangles[t].data(), 3, keys[t].begin());
-    std::sort(keys[t].begin(), keys[t].begin() + 3);
-    keys[t][3] = static_cast<int>(t);
-  }
-  std::sort(keys.begin(), keys.end());
-  std::vector<char> gone(keys.size(), 0);
-  for (std::size_t n = 0; n + 1 < keys.size(); ++n)
-    if (std::equal(keys[n].begin(), keys[n].begin() + 3, keys[n + 1].begin())) {
-      gone[static_cast<std::size_t>(keys[n][3])] = gone[static_cast<std::size_t>(keys[n + 1][3])] =
-          1;
-      ++n;
-    }
-  std::size_t kept = 0;
-  for (std::size_t t = 0; t < triangles.size(); ++t)
-    if (!gone[t]) triangles[kept++] = triangles[t];
-  triangles.resize(kept);
 }
 
 /// Vertices at edges that have other than two triangles in opposite directions.
@@ -115,7 +92,7 @@ TriMesh decimated_closed(const TriMesh& mesh, int target) {
     const auto coarse =
         coarser(positions, free, left, bounding_box(mesh).size().norm(), Rims::fixed);
     result.insert(result.end(), coarse.begin(), coarse.end());
-    cancel_flat_pairs(result);
+    drop_flaps(result);
     TriMesh decimated{mesh.vertices, std::move(result), {}};
     const std::vector<int> open = open_vertices(decimated);
     if (open.empty()) {

@@ -20,29 +20,6 @@ constexpr double skin_blur_voxels = 0.6, lattice_step_mm = 0.95;
 constexpr std::int16_t air_hu = -1000;
 constexpr double least_skin_mm3 = 20000;  // of a piece
 
-/// The voxels of the head with a margin, one beyond the volume at most.
-VoxelBox box_of_head(const Volume& volume, const HeadRegion& head) {
-  std::array<int, 3> low, high = {-1, -1, -1};
-  low.fill(std::numeric_limits<int>::max());
-  std::size_t c = 0;
-  for (int k = 0; k < head.size[2]; ++k)
-    for (int j = 0; j < head.size[1]; ++j)
-      for (int i = 0; i < head.size[0]; ++i, ++c) {
-        if (!head.head[c]) continue;
-        const std::array<int, 3> at = {i, j, k};
-        for (std::size_t a = 0; a < 3; ++a) {
-          low[a] = std::min(low[a], at[a]);
-          high[a] = std::max(high[a], at[a]);
-        }
-      }
-  VoxelBox box;
-  for (std::size_t a = 0; a < 3; ++a) {
-    box.low[a] = (low[a] - 1) * head.cell[a];
-    box.size[a] = (high[a] + 2) * head.cell[a] - box.low[a];
-  }
-  return box.within(whole_box(volume).grown(1));
-}
-
 /// The scan without what lies around the head, and with cavities filled: as if the head were one
 /// solid.
 Volume solid_head(const Volume& volume, const TissueLevels& levels, const HeadRegion& head,
@@ -133,7 +110,8 @@ ScanSurface skin_surface(const Volume& volume, const TissueLevels& levels, const
     throw InputError(
         fmt::format("{}: no air around the head: its skin lies outside the field of view", name));
   report(progress, "finding the skin", 0);
-  const VoxelBox box = box_of_head(volume, head);
+  const VoxelBox box = box_of_cells(
+      volume, head, [&](std::size_t cell) { return head.head[cell] != 0; }, 1, 0);
   Volume solid = solid_head(volume, levels, head, box, options.threads);
   if (metal)
     trim_streaks(*metal, levels.skin(), static_cast<std::int16_t>(std::lround(levels.soft)),
