@@ -176,7 +176,6 @@ TEST_F(WindowSession, ALooseCaseIsChosenAtOnceInTheOpenDialog) {
   // So is one that the command line names.
   EXPECT_TRUE(press("ctrl+q"));
   ASSERT_EQ(wait_for_end(), 0);
-  fs::remove(folder_ / "state.json");
   start({folder_.path()});
   ASSERT_TRUE(wait_for_item("import-role:3")) << state().value("trouble", "nothing was said");
   see("named-folder");

@@ -76,7 +76,6 @@ class WindowSaving : public WindowSession {
   void quit() {
     EXPECT_TRUE(press("ctrl+q"));
     EXPECT_EQ(wait_for_end(), 0);
-    fs::remove(folder_ / "state.json");
   }
   std::string patient_;
 };

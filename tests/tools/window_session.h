@@ -44,15 +44,16 @@ class WindowSession : public testing::Test {
     unsetenv("XDG_STATE_HOME");
   }
   void start(std::vector<std::string> arguments) {
+    ++starts_;  // a program that was set aside goes on writing its own state file
     arguments.insert(arguments.begin(), {program_file().string(), "--threads", "1", "view"});
-    arguments.insert(arguments.end(), {"--state-file", folder_ / "state.json"});
+    arguments.insert(arguments.end(), {"--state-file", state_file()});
     std::vector<char*> words;
     for (auto& word : arguments) words.push_back(word.data());
     words.push_back(nullptr);
     ASSERT_EQ(posix_spawn(&program_, words[0], nullptr, nullptr, words.data(), environ), 0);
   }
   Json state() {
-    const std::string file = folder_ / "state.json";
+    const std::string file = state_file();
     return fs::exists(file) ? Json::parse(read_text(file)) : Json::object();
   }
   bool wait_until(const std::function<bool(const Json&)>& law, double longest_s = 40) {
@@ -94,13 +95,9 @@ class WindowSession : public testing::Test {
   void kill_at_once() {
     kill(program_, SIGKILL);
     waitpid(std::exchange(program_, -1), nullptr, 0);
-    fs::remove(folder_ / "state.json");
   }
-  /// Leaves the program running, for another one to be started; it is killed with the last handle.
-  pid_t set_aside() {
-    fs::remove(folder_ / "state.json");
-    return std::exchange(program_, -1);
-  }
+  /// Leaves the program running, for another one to be started; the caller kills it.
+  pid_t set_aside() { return std::exchange(program_, -1); }
   int wait_for_end() {
     int status = 0;
     for (int i = 0; i < 400; ++i) {
@@ -167,7 +164,12 @@ class WindowSession : public testing::Test {
     return changed;
   }
 
+  std::string state_file() const {
+    return folder_ / ("state-" + std::to_string(starts_) + ".json");
+  }
+
   int steps_ = 0;
+  int starts_ = 0;
   std::unique_ptr<TestDisplay> display_;
   pid_t program_ = -1;
 };

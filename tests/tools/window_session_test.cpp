@@ -179,7 +179,6 @@ TEST_F(WindowSession, ThemeScaleSizesAndTabsAreKeptBetweenRunsAndTheCommandLineW
   const auto quit = [&] {
     EXPECT_TRUE(press("ctrl+q"));
     EXPECT_EQ(wait_for_end(), 0);
-    fs::remove(folder_ / "state.json");
   };
   start({patient, "--motion", "rest"});
   ASSERT_TRUE(wait_until(idle));
