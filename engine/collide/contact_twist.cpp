@@ -254,7 +254,7 @@ TwistSolution nearest_allowed(const Twist& requested, const std::vector<ContactR
         break;
       const bool crowded =
           std::any_of(joined.begin() + static_cast<std::ptrdiff_t>(before), joined.end(),
-                      [&](const Joined& other) {
+                      [&, row = row](const Joined& other) {
                         return (rows[other.row].arm - rows[row].arm).squaredNorm() <
                                settings.thinning_mm * settings.thinning_mm;
                       });

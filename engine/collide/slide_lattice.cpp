@@ -232,7 +232,7 @@ bool SlideLattice::begin_prefetch(Tree& tree, const std::pair<std::vector<Key>, 
   if (keys.empty()) return false;
   const Pose place = place_of(keys.back());
   if (parent.found)
-    prefetch_.emplace(&tree, keys.back(), parent, walk(parent, place));
+    prefetch_.emplace(Prefetch{&tree, keys.back(), parent, walk(parent, place)});
   else
     tree[keys.back()] = alone(place);
   return true;

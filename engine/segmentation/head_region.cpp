@@ -121,7 +121,7 @@ void mark_head(HeadRegion& region, const Mask& solid, const Mask& core,
 
 /// Marks the cells next to the head that are not solid: its surface runs through some of them.
 void mark_edge(HeadRegion& region, const Mask& solid) {
-  const auto [nx, ny, nz] = region.size;
+  const int nx = region.size[0], ny = region.size[1], nz = region.size[2];
   const auto at = [&](int i, int j, int k) {
     return (static_cast<std::size_t>(k) * static_cast<std::size_t>(ny) +
             static_cast<std::size_t>(j)) *

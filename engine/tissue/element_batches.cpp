@@ -226,6 +226,9 @@ INLINE Lanes inverse_root_of_floats(const Lanes& v) {
 #pragma GCC push_options
 #pragma GCC optimize("fp-contract=fast")
 #pragma GCC target("avx2,fma")
+#ifdef __clang__
+#pragma clang attribute push(__attribute__((target("avx2,fma"))), apply_to = function)
+#endif
 namespace avx2 {
 CONDYLE_ONE_BATCH
 INLINE Lanes inverse_root_of_floats(const Lanes& v) {
@@ -234,6 +237,11 @@ INLINE Lanes inverse_root_of_floats(const Lanes& v) {
 #include "engine/tissue/element_batches.inc"
 }  // namespace avx2
 #pragma GCC target("avx512f,avx512dq,avx512vl")
+#ifdef __clang__
+#pragma clang attribute pop
+#pragma clang attribute push(__attribute__((target("avx512f,avx512dq,avx512vl,avx2,fma"))), \
+                             apply_to = function)
+#endif
 namespace avx512 {
 constexpr int wide = 2 * ElementBatches::lanes;
 typedef __m512d Lanes;
@@ -262,6 +270,9 @@ INLINE Lanes inverse_root_of_floats(const Lanes& v) {
 #include "engine/tissue/element_batches.inc"
 }  // namespace avx512
 #pragma GCC pop_options
+#ifdef __clang__
+#pragma clang attribute pop
+#endif
 #endif
 
 #undef CONDYLE_ONE_BATCH

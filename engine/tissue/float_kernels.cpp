@@ -51,6 +51,9 @@ CONDYLE_INLINE void totals(const Vector (&sum)[N][tile_vectors], float* to) {
 #pragma GCC push_options
 #pragma GCC optimize("fp-contract=fast")
 #pragma GCC target("avx2,fma")
+#ifdef __clang__
+#pragma clang attribute push(__attribute__((target("avx2,fma"))), apply_to = function)
+#endif
 namespace avx2 {
 constexpr int W = 8, tile_vectors = tile_rows / W;
 constexpr bool fused = true;
@@ -70,6 +73,11 @@ CONDYLE_INLINE void totals(const Vector (&sum)[N][tile_vectors], float* to) {
 #include "engine/tissue/float_kernels.inc"
 }  // namespace avx2
 #pragma GCC target("avx512f,avx512bw,avx512vl")
+#ifdef __clang__
+#pragma clang attribute pop
+#pragma clang attribute push(__attribute__((target("avx512f,avx512bw,avx512vl,avx2,fma"))), \
+                             apply_to = function)
+#endif
 namespace avx512 {
 constexpr int W = 16, tile_vectors = tile_rows / W;
 constexpr bool fused = true;
@@ -104,6 +112,9 @@ CONDYLE_INLINE void totals(const Vector (&sum)[N][1], float* to) {
 #include "engine/tissue/float_kernels.inc"
 }  // namespace avx512
 #pragma GCC pop_options
+#ifdef __clang__
+#pragma clang attribute pop
+#endif
 #endif
 
 #undef CONDYLE_UNROLL

@@ -86,7 +86,7 @@ CtScan scan_ct(const ScannedHead& head, const CtSettings& settings, const Progre
   Volume& volume = scan.volume;
   scan.truth.assign(volume.values.size(), ScanTissue::outside);
   const Blocks blocks(volume);
-  const auto [across, along, up] = blocks.count;
+  const int across = blocks.count[0], along = blocks.count[1], up = blocks.count[2];
   for (int k = 0; k < up; ++k) {
     report(progress, "scanning the head", static_cast<double>(k) / up);
     parallel_for(static_cast<std::size_t>(across * along), settings.threads, [&](std::size_t n) {
