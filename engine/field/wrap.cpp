@@ -11,6 +11,7 @@
 #include "engine/field/isosurface.h"
 #include "engine/field/sampled_field.h"
 #include "engine/mesh/measure.h"
+#include "engine/mesh/pieces.h"
 #include "engine/mesh/topology.h"
 #include "engine/mesh/triangle_tree.h"
 
@@ -156,15 +157,7 @@ class WrapSampler {
 /// The components of at least `fewest_mm3`, cavities too; `solids` counts those that face outward.
 TriMesh without_crumbs(const TriMesh& mesh, int& solids) {
   const Components components = find_components(mesh);
-  std::vector<double> volume(components.count, 0);
-  const Vector3d origin = mesh.empty() ? Vector3d::Zero() : mesh.vertices[0];
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const auto& v = mesh.triangles[t];
-    volume[components.of_triangle[t]] +=
-        (mesh.vertices[v[0]] - origin)
-            .dot((mesh.vertices[v[1]] - origin).cross(mesh.vertices[v[2]] - origin)) /
-        6;
-  }
+  const std::vector<double> volume = component_volumes(mesh, components);
   solids = static_cast<int>(
       std::count_if(volume.begin(), volume.end(), [](double v) { return v >= fewest_mm3; }));
   TriMesh out;

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "engine/mesh/pieces.h"
 #include "engine/mesh/topology.h"
 
 namespace condyle {
@@ -154,16 +155,10 @@ std::optional<std::vector<Eigen::Vector3i>> cover(const TriMesh& mesh, const Rim
 ClosedHoles close_small_holes(TriMesh& mesh, const SmallHole& small) {
   const Rims rims(mesh);
   const Components pieces = find_components(mesh);
-  std::vector<double> area(pieces.count, 0);
+  const std::vector<double> area = component_areas(mesh, pieces);
   std::vector<int> piece_of(mesh.vertices.size(), 0);
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const auto& corners = mesh.triangles[t];
-    const auto& a = mesh.vertices[corners[0]];
-    const int piece = pieces.of_triangle[t];
-    area[piece] +=
-        0.5 * (mesh.vertices[corners[1]] - a).cross(mesh.vertices[corners[2]] - a).norm();
-    for (int k = 0; k < 3; ++k) piece_of[corners[k]] = piece;
-  }
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+    for (const int v : mesh.triangles[t]) piece_of[v] = pieces.of_triangle[t];
   ClosedHoles closed;
   std::vector<Eigen::Vector3i> added;
   for (const auto& hole : rims.holes()) {

@@ -7,6 +7,7 @@
 #include "engine/core/parallel.h"
 #include "engine/field/isosurface.h"
 #include "engine/mesh/measure.h"
+#include "engine/mesh/pieces.h"
 #include "engine/mesh/repair.h"
 #include "engine/mesh/simplify.h"
 #include "engine/mesh/topology.h"
@@ -23,25 +24,6 @@ GridAxis steps(int count) {
   GridAxis axis(static_cast<std::size_t>(count));
   std::iota(axis.begin(), axis.end(), 0.0);
   return axis;
-}
-
-/// Drops pieces of less volume; cavities have a negative one.
-void drop_small_pieces(TriMesh& mesh, double least_mm3) {
-  const Components pieces = find_components(mesh);
-  std::vector<double> volume(static_cast<std::size_t>(pieces.count), 0);
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const auto corner = [&](int c) {
-      return mesh.vertices[static_cast<std::size_t>(mesh.triangles[t][c])];
-    };
-    volume[static_cast<std::size_t>(pieces.of_triangle[t])] +=
-        corner(0).dot(corner(1).cross(corner(2))) / 6;
-  }
-  std::size_t kept = 0;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    if (volume[static_cast<std::size_t>(pieces.of_triangle[t])] >= least_mm3)
-      mesh.triangles[kept++] = mesh.triangles[t];
-  mesh.triangles.resize(kept);
-  drop_unreferenced(mesh);
 }
 
 /// Vertices at edges that have other than two triangles in opposite directions.
@@ -114,7 +96,8 @@ TriMesh lattice_surface(const Volume& volume, const VoxelBox& box, std::vector<f
   for (Vector3d& p : mesh.vertices) p = box.position(volume, p.z(), p.y(), p.x());
   if (volume.axes.determinant() > 0)
     for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
-  drop_small_pieces(mesh, least_mm3);
+  const Components pieces = find_components(mesh);
+  drop_components_below(mesh, pieces, component_volumes(mesh, pieces), least_mm3);
   return mesh;
 }
 

@@ -9,6 +9,7 @@
 
 #include "engine/core/error.h"
 #include "engine/mesh/measure.h"
+#include "engine/mesh/pieces.h"
 #include "engine/mesh/repair.h"
 #include "engine/mesh/rims.h"
 #include "engine/mesh/topology.h"
@@ -44,24 +45,8 @@ double fanned_volume(const TriMesh& mesh) {
 /// Drops pieces of little area. Returns their number.
 int drop_specks(TriMesh& mesh) {
   const Components pieces = find_components(mesh);
-  std::vector<double> area(static_cast<std::size_t>(pieces.count));
-  double whole = 0;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const auto& c = mesh.triangles[t];
-    const double a = (mesh.vertices[c[1]] - mesh.vertices[c[0]])
-                         .cross(mesh.vertices[c[2]] - mesh.vertices[c[0]])
-                         .norm();
-    area[static_cast<std::size_t>(pieces.of_triangle[t])] += a;
-    whole += a;
-  }
-  std::size_t kept = 0;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    if (area[static_cast<std::size_t>(pieces.of_triangle[t])] >= loose_fraction * whole)
-      mesh.triangles[kept++] = mesh.triangles[t];
-  mesh.triangles.resize(kept);
-  drop_unreferenced(mesh);
-  return static_cast<int>(std::count_if(area.begin(), area.end(),
-                                        [&](double a) { return a < loose_fraction * whole; }));
+  return drop_components_below(mesh, pieces, component_areas(mesh, pieces),
+                               loose_fraction * surface_area(mesh));
 }
 
 void check_arch_size(const TriMesh& mesh, const std::filesystem::path& file, bool partial) {

@@ -8,6 +8,7 @@
 
 #include "engine/core/error.h"
 #include "engine/mesh/measure.h"
+#include "engine/mesh/pieces.h"
 #include "engine/mesh/refine.h"
 #include "engine/mesh/repair.h"
 #include "engine/mesh/topology.h"
@@ -23,26 +24,11 @@ namespace fs = std::filesystem;
 /// Drops the pieces smaller than a tenth of the largest one. Returns their number.
 int drop_small_pieces(TriMesh& mesh) {
   constexpr double least_share = 0.1;
+  if (mesh.triangles.empty()) return 0;
   const Components pieces = find_components(mesh);
-  std::vector<double> area(static_cast<std::size_t>(pieces.count), 0);
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const auto& c = mesh.triangles[t];
-    const auto& v = mesh.vertices;
-    area[static_cast<std::size_t>(pieces.of_triangle[t])] +=
-        0.5 * (v[static_cast<std::size_t>(c[1])] - v[static_cast<std::size_t>(c[0])])
-                  .cross(v[static_cast<std::size_t>(c[2])] - v[static_cast<std::size_t>(c[0])])
-                  .norm();
-  }
-  if (area.empty()) return 0;
-  const double least = least_share * *std::max_element(area.begin(), area.end());
-  std::size_t kept = 0;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    if (area[static_cast<std::size_t>(pieces.of_triangle[t])] >= least)
-      mesh.triangles[kept++] = mesh.triangles[t];
-  mesh.triangles.resize(kept);
-  drop_unreferenced(mesh);
-  return static_cast<int>(
-      std::count_if(area.begin(), area.end(), [&](double a) { return a < least; }));
+  const std::vector<double> areas = component_areas(mesh, pieces);
+  return drop_components_below(mesh, pieces, areas,
+                               least_share * *std::max_element(areas.begin(), areas.end()));
 }
 
 TriMesh mesh_of_map(const fs::path& file, std::vector<std::string>& notes) {
