@@ -5,6 +5,7 @@
 
 #include "engine/core/parallel.h"
 #include "engine/segmentation/distance_map.h"
+#include "engine/volume/blur.h"
 
 namespace condyle {
 namespace {
@@ -14,6 +15,7 @@ constexpr int least_saturated_hu = 2000, saturation_slack_hu = 30;
 constexpr double least_metal_mm2 = 4, longest_slab_mm = 40, beyond_mm = 1;
 constexpr double beside_bone_mm = 4, beside_head_mm = 3, spike_mm = 5, within_head_mm = 4;
 constexpr float streak_reach_mm = 50;
+constexpr double fading_mm = 10, outline_blur_mm = 2;
 constexpr std::int16_t streak_air_hu = -1000;
 
 /// A slice of a lattice across an axis: places of its pixels.
@@ -72,6 +74,46 @@ std::vector<float> metal_distances(const SliceLattice& lattice, const MetalSlab&
           static_cast<std::size_t>(pixel[0])] = 1;
   }
   return flat_distances(lattice, [&](std::size_t p) { return metal[p] != 0; });
+}
+
+/// Blurs the slices from `first` up to `last`, between air and soft tissue, near the metal.
+void blur_outline(const SliceLattice& lattice, int first, int last,
+                  const std::vector<float>& from_metal, std::int16_t soft_hu, Volume& solid,
+                  int threads) {
+  std::array<double, 3> sigma;
+  for (std::size_t a = 0; a < 3; ++a)
+    sigma[a] = outline_blur_mm / solid.spacing_mm[static_cast<int>(a)];
+  const int beside = static_cast<int>(std::ceil(3 * sigma[lattice.axis]));
+  const int low = std::max(0, first - beside),
+            high = std::min(solid.size[lattice.axis], last + beside);
+  std::array<int, 3> size = solid.size;
+  size[lattice.axis] = high - low;
+  std::vector<std::int16_t> smooth;
+  const auto in_slab = [&](std::array<int, 3> at) {
+    at[lattice.axis] -= low;
+    return (static_cast<std::size_t>(at[2]) * static_cast<std::size_t>(size[1]) +
+            static_cast<std::size_t>(at[1])) *
+               static_cast<std::size_t>(size[0]) +
+           static_cast<std::size_t>(at[0]);
+  };
+  smooth.resize(lattice.pixels() * static_cast<std::size_t>(high - low));
+  for (int slice = low; slice < high; ++slice)
+    for (std::size_t p = 0; p < lattice.pixels(); ++p) {
+      const auto at = lattice.place(p, slice);
+      smooth[in_slab(at)] =
+          std::clamp(solid.values[solid.index(at[0], at[1], at[2])], streak_air_hu, soft_hu);
+    }
+  blur(smooth, size, sigma, threads);
+  for (int slice = first; slice < last; ++slice)
+    for (std::size_t p = 0; p < lattice.pixels(); ++p) {
+      const double near =
+          std::clamp((streak_reach_mm - std::sqrt(from_metal[p])) / fading_mm, 0.0, 1.0);
+      if (near == 0) continue;
+      const auto at = lattice.place(p, slice);
+      std::int16_t& value = solid.values[solid.index(at[0], at[1], at[2])];
+      value =
+          static_cast<std::int16_t>(std::lround((1 - near) * value + near * smooth[in_slab(at)]));
+    }
 }
 
 bool is_bone(VoxelLabel label) { return label != no_bone && label != other_bone; }
@@ -169,6 +211,7 @@ void trim_streaks(const MetalSlab& slab, double level_hu, std::int16_t soft_hu, 
         value(p, slice) = std::max(value(p, slice), soft_hu);
     }
   });
+  if (first < last) blur_outline(lattice, first, last, from_metal, soft_hu, solid, threads);
 }
 
 }  // namespace condyle

@@ -17,7 +17,8 @@ void drop_streaks(const Volume& volume, const MetalSlab& slab, BoneVoxels& bone,
 
 /// Repairs the outline of the head in the slab where it is farther than 3 mm outside or 4 mm inside
 /// of that above and below: streaks narrower than 10 mm become air, dents get `soft_hu`.
-/// `level_hu`: of the outline; `first_slice`: of `solid`, counted in the volume.
+/// What remains of streaks is blurred out of the outline. `level_hu`: of the outline;
+/// `first_slice`: of `solid`, counted in the volume.
 void trim_streaks(const MetalSlab& slab, double level_hu, std::int16_t soft_hu, int first_slice,
                   Volume& solid, int threads);
 

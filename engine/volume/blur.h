@@ -12,4 +12,8 @@ namespace condyle {
 void blur(std::vector<std::int16_t>& values, const std::array<int, 3>& size, double sigma,
           int threads);
 
+/// The same with a sigma for each axis; 0 leaves an axis unchanged.
+void blur(std::vector<std::int16_t>& values, const std::array<int, 3>& size,
+          const std::array<double, 3>& sigma, int threads);
+
 }  // namespace condyle
