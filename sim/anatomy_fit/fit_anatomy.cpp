@@ -14,6 +14,7 @@
 #include "sim/anatomy_fit/definitions.h"
 #include "sim/anatomy_fit/fit_start.h"
 #include "sim/anatomy_fit/head_template.h"
+#include "sim/anatomy_fit/mouth_line.h"
 #include "sim/anatomy_fit/part_landmarks.h"
 
 namespace condyle {
@@ -341,6 +342,10 @@ void Fitter::finish() {
   take(skull_, result_.skull);
   take(jaw_, result_.mandible);
   take(skin_, result_.skin);
+  if (skin_ && skull_ && settings_.definitions) {
+    const Eigen::Matrix3d& turn = skull_->fit.similarity.matrix;
+    find_mouth_line(result_.landmarks, scan_.skin, turn / std::cbrt(turn.determinant()));
+  }
   if (jaw_)
     for (Canal canal : model_.canals) {
       canal.points = jaw_->fit.deformation.carried(canal.points, 1);
