@@ -6,6 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "engine/dicom/ct_volume.h"
 #include "engine/mesh/topology.h"
 #include "engine/mesh_io/mesh_files.h"
 #include "engine/volume/volume_files.h"

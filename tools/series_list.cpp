@@ -47,21 +47,6 @@ Json described(const CtSeries& series) {
   return json;
 }
 
-std::string facts_of(const CtSeries& series) {
-  const Eigen::Vector3d extent = series.extent_mm();
-  std::string facts =
-      fmt::format("{}, {} slice{} of {} x {}", series_kind_name(series.kind), series.slices,
-                  series.slices == 1 ? "" : "s", series.columns, series.rows);
-  if (series.step_mm > 0)
-    facts += fmt::format(", {:.3g} x {:.3g} x {:.3g} mm apart, {:.0f} x {:.0f} x {:.0f} mm in all",
-                         series.column_spacing_mm, series.row_spacing_mm, series.step_mm,
-                         extent.x(), extent.y(), extent.z());
-  if (!series.kernel.empty()) facts += ", kernel " + series.kernel;
-  if (series.kvp > 0) facts += fmt::format(", {:g} kVp", series.kvp);
-  if (!series.manufacturer.empty()) facts += ", " + series.manufacturer;
-  return facts + ", " + series.coding;
-}
-
 }  // namespace
 
 void print_series(const CtFolder& folder, const std::filesystem::path& path,
@@ -79,26 +64,13 @@ void print_series(const CtFolder& folder, const std::filesystem::path& path,
   fmt::print("{}: {} series\n", path.string(), folder.series().size());
   for (const CtSeries& series : folder.series()) {
     fmt::print("{} {:>2}  {}\n", series.number == chosen ? "*" : " ", series.number,
-               facts_of(series));
+               series_facts(series));
     for (const std::string& note : series.notes) fmt::print("      note: {}\n", note);
     for (const std::string& problem : series.problems) fmt::print("      refused: {}\n", problem);
     if (!series.uneven.empty()) fmt::print("      refused unless resampled: {}\n", series.uneven);
   }
   for (const std::string& note : folder.notes()) fmt::print("  note: {}\n", note);
   fmt::print("{}\n", chosen > 0 ? "* is taken by default" : reason);
-}
-
-bool holds_dicom(const std::filesystem::path& path) {
-  namespace fs = std::filesystem;
-  std::error_code error;
-  if (!fs::is_directory(path, error) || fs::exists(path / "case.json", error)) return false;
-  int looked_at = 0;
-  for (fs::recursive_directory_iterator entry(path, fs::directory_options::skip_permission_denied,
-                                              error);
-       !error && entry != fs::recursive_directory_iterator() && looked_at < 1000;
-       entry.increment(error), ++looked_at)
-    if (entry->is_regular_file(error) && is_dicom_file(entry->path())) return true;
-  return false;
 }
 
 }  // namespace condyle

@@ -12,7 +12,4 @@ namespace condyle {
 void print_series(const CtFolder& folder, const std::filesystem::path& path,
                   const CommonOptions& common);
 
-/// Whether the path is a folder without case.json, in which a file holds DICOM.
-bool holds_dicom(const std::filesystem::path& path);
-
 }  // namespace condyle

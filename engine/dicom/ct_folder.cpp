@@ -266,4 +266,19 @@ CtVolume CtFolder::read(const CtRequest& request, const Progress& progress) cons
   return read;
 }
 
+std::string series_facts(const CtSeries& series) {
+  const Eigen::Vector3d extent = series.extent_mm();
+  std::string facts =
+      fmt::format("{}, {} slice{} of {} x {}", series_kind_name(series.kind), series.slices,
+                  series.slices == 1 ? "" : "s", series.columns, series.rows);
+  if (series.step_mm > 0)
+    facts += fmt::format(", {:.3g} x {:.3g} x {:.3g} mm apart, {:.0f} x {:.0f} x {:.0f} mm in all",
+                         series.column_spacing_mm, series.row_spacing_mm, series.step_mm,
+                         extent.x(), extent.y(), extent.z());
+  if (!series.kernel.empty()) facts += ", kernel " + series.kernel;
+  if (series.kvp > 0) facts += fmt::format(", {:g} kVp", series.kvp);
+  if (!series.manufacturer.empty()) facts += ", " + series.manufacturer;
+  return facts + ", " + series.coding;
+}
+
 }  // namespace condyle

@@ -37,6 +37,9 @@ struct CtSeries {
   bool readable(bool resample) const { return problems.empty() && (resample || uneven.empty()); }
 };
 
+/// A series in one line: "CT, 210 slices of 512 x 512, ...".
+std::string series_facts(const CtSeries& series);
+
 struct CtFileCounts {
   int files = 0, slices = 0;
   int without_image = 0;  // DICOM files of other content

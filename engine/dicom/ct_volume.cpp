@@ -4,6 +4,7 @@
 #include "engine/volume/volume_files.h"
 
 namespace condyle {
+namespace fs = std::filesystem;
 
 CtVolume ct_volume(const std::filesystem::path& what, const CtRequest& request,
                    const Progress& progress) {
@@ -25,6 +26,18 @@ bool is_dicom_file(const std::filesystem::path& file) {
   } catch (const DicomDamage&) {
     return false;
   }
+}
+
+bool holds_dicom(const std::filesystem::path& path) {
+  std::error_code error;
+  if (!fs::is_directory(path, error) || fs::exists(path / "case.json", error)) return false;
+  int looked_at = 0;
+  for (fs::recursive_directory_iterator entry(path, fs::directory_options::skip_permission_denied,
+                                              error);
+       !error && entry != fs::recursive_directory_iterator() && looked_at < 1000;
+       entry.increment(error), ++looked_at)
+    if (entry->is_regular_file(error) && is_dicom_file(entry->path())) return true;
+  return false;
 }
 
 }  // namespace condyle

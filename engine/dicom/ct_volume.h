@@ -14,4 +14,8 @@ CtVolume ct_volume(const std::filesystem::path& what, const CtRequest& request =
 /// Whether the file holds DICOM.
 bool is_dicom_file(const std::filesystem::path& file);
 
+/// Whether the path is a folder without case.json, in which a file holds DICOM: one of the first
+/// thousand.
+bool holds_dicom(const std::filesystem::path& path);
+
 }  // namespace condyle

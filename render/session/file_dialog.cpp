@@ -26,7 +26,7 @@ using Purpose = request::Browse::Purpose;
 constexpr std::size_t most_words = std::size_t{1} << 20;  // of the answer, bytes
 constexpr const char* openable =
     "*.condyle-session case.json *.mrk.json *.json *.stl *.ply *.obj *.glb *.gltf *.csv *.motion "
-    "*.mot *.sto *.trc *.raw *.txt";
+    "*.mot *.sto *.trc *.raw *.txt *.nrrd *.nhdr *.mha *.mhd *.nii *.nii.gz *.dcm *.DCM";
 
 fs::path in_search_path(const std::string& name) {
   const char* path = std::getenv("PATH");
@@ -42,7 +42,7 @@ fs::path in_search_path(const std::string& name) {
 const char* title_of(Purpose purpose) {
   switch (purpose) {
     case Purpose::open:
-      return "Open a session, a patient, a motion or surfaces";
+      return "Open a session, a patient, a motion, surfaces or a scan";
     case Purpose::save_session:
       return "Save the session";
     case Purpose::record_folder:

@@ -12,7 +12,7 @@ namespace condyle {
 void PatientLoader::start(std::function<Case(const Progress&)> read, std::filesystem::path folder,
                           std::string words, PatientSource source, std::filesystem::path plan) {
   renewing_.reset();
-  opens_session_ = false;
+  opens_session_ = makes_ct_ = false;
   job_.start([read = std::move(read), folder = std::move(folder), words = std::move(words),
               settings = state_.settings.simulator, source = std::move(source),
               plan = std::move(plan)](const Progress& progress) {
@@ -54,6 +54,13 @@ void PatientLoader::import(const request::Import& request) {
         {}, "reading the surfaces", std::move(source));
 }
 
+void PatientLoader::make_of_ct(const CtMaking& making) {
+  start([making](const Progress& progress) { return make_ct_patient(making, progress); },
+        making.folder, "making the patient",
+        FolderSource{std::filesystem::absolute(making.folder)});
+  makes_ct_ = true;
+}
+
 void PatientLoader::renew(std::vector<Landmark> landmarks) {
   start([patient = state_.patient,
          landmarks](const Progress&) { return with_landmarks(patient->scene.patient, landmarks); },
@@ -67,6 +74,7 @@ std::optional<PatientLoader::Loaded> PatientLoader::take() {
   std::optional<Loaded> loaded;
   const char* title = renewed          ? "Cannot use these landmarks"
                       : opens_session_ ? "Cannot open the session"
+                      : makes_ct_      ? "Cannot make a patient of this CT"
                                        : "Cannot open the patient";
   state_.try_or_report(title, [&] { loaded = job_.take(); });
   if (loaded) loaded->renewed = std::move(renewed);

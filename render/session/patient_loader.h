@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "render/session/session_state.h"
+#include "sim/ct_session/ct_import.h"
 
 namespace condyle {
 
@@ -38,6 +39,10 @@ class PatientLoader {
   void open(const std::filesystem::path& folder);
   /// Imports surfaces, landmarks and muscles with their roles.
   void import(const request::Import& request);
+  /// Makes the patient of a CT, and saves it in its folder.
+  void make_of_ct(const CtMaking& making);
+  /// Whether the work, or its result that was not taken yet, is a patient of a CT.
+  bool makes_ct() const { return makes_ct_ && job_.active(); }
   /// Loads the patient of a session with its plan; what does not fit is left out and noted.
   void open_session(const std::filesystem::path& file);
   /// Rebuilds the session's patient with other landmarks.
@@ -53,7 +58,7 @@ class PatientLoader {
 
   SessionState& state_;
   std::optional<std::vector<Landmark>> renewing_;
-  bool opens_session_ = false;
+  bool opens_session_ = false, makes_ct_ = false;
   Job<Loaded> job_;
 };
 

@@ -74,6 +74,7 @@ PatientLoader::Loaded load_saved_patient(const std::filesystem::path& file,
 void PatientLoader::open_session(const std::filesystem::path& file) {
   renewing_.reset();
   opens_session_ = true;
+  makes_ct_ = false;
   job_.start([file, settings = state_.settings.simulator](const Progress& progress) {
     return load_saved_patient(file, settings, progress);
   });

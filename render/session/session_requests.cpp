@@ -39,7 +39,11 @@ std::string title_of_failure(const Request& request) {
                  [](const request::SavePlan&) { return "Cannot save the plan"; },
                  [](const request::SaveSession&) { return "Cannot save the session"; },
                  [](const request::Recover&) { return "Cannot recover the session"; },
-                 [](const request::Browse&) { return "Cannot show the file dialog"; }},
+                 [](const request::Browse&) { return "Cannot show the file dialog"; },
+                 [](const request::ReadSeries&) { return "Cannot read this series"; },
+                 [](const request::ShowCt&) { return "Cannot show this CT"; },
+                 [](const request::MakeCtPatient&) { return "Cannot make a patient of this CT"; },
+                 [](const request::CloseCt&) { return "Cannot close the CT"; }},
       request);
 }
 
@@ -101,7 +105,10 @@ void ViewSession::take_chosen_files() {
 void ViewSession::carry_out(const Request& request) {
   const Overloaded act{
       [&](const request::Open& open) { open_files(open.files); },
-      [&](const request::Import& files) { loader_.import(files); },
+      [&](const request::Import& files) {
+        close_ct();
+        loader_.import(files);
+      },
       [&](const request::Record& record) { recording_.record(record, preview_.paths()); },
       [&](const request::StopRecording&) { recording_.stop(); },
       [&](const request::ResumeRecording&) { recording_.resume(); },
@@ -129,12 +136,25 @@ void ViewSession::carry_out(const Request& request) {
         if (dialog_.open()) return state_.front_end.say("A file dialog is open already");
         dialog_.show(asked);
       },
+      [&](const request::ReadSeries& series) {
+        ct_.read(series.number);
+        show_ct();
+      },
+      [&](const request::ShowCt& shown) {
+        ct_.choose(shown.choice);
+        show_ct();
+      },
+      [&](const request::MakeCtPatient& made) { make_ct_patient(made.folder); },
+      [&](const request::CloseCt&) { close_ct(); },
   };
   state_.try_or_report(title_of_failure(request), [&] { std::visit(act, request); });
 }
 
 void ViewSession::open_files(const std::vector<fs::path>& files) {
-  if (files.empty()) return loader_.open({});
+  if (files.empty()) {
+    close_ct();
+    return loader_.open({});
+  }
   const fs::path& one = files.front();
   std::error_code ignored;
   if (!fs::exists(one, ignored)) {
@@ -157,6 +177,7 @@ void ViewSession::open_files(const std::vector<fs::path>& files) {
                       fmt::join(others, ", ")));
     return state_.front_end.ask_roles({.files = proposed_roles(surfaces)});
   }
+  if (const auto scan = scan_of(files)) return open_scan(*scan);
   if (files.size() > 1)
     state_.front_end.say(
         fmt::format("Of {} files the first is opened: {}", files.size(), one.filename().string()));
@@ -167,8 +188,10 @@ void ViewSession::open_files(const std::vector<fs::path>& files) {
 void ViewSession::open_file(const fs::path& file) {
   switch (kind_of(file)) {
     case FileKind::patient:
+      close_ct();
       return loader_.open(fs::is_directory(file) ? file : file.parent_path());
     case FileKind::session:
+      close_ct();
       return loader_.open_session(file);
     case FileKind::plan:
       if (!state_.patient) throw InputError(file, "", "is a plan; open its patient first");
@@ -187,11 +210,16 @@ void ViewSession::open_file(const fs::path& file) {
       throw InputError(
           file, "",
           "cannot be opened: it is no session, no case folder, no motion (CSV, .motion, .mot, "
-          ".sto, .trc) and no surface (STL, PLY, OBJ, glTF)");
+          ".sto, .trc), no surface (STL, PLY, OBJ, glTF) and no scan (DICOM, NRRD, MetaImage, "
+          "NIfTI)");
   }
 }
 
 void ViewSession::cancel() {
+  if (ct_.job().active()) {
+    ct_.cancel();
+    return show_ct();
+  }
   if (loader_.job().active()) return loader_.drop();
   if (plan_.checking().active() || plan_.predicting().active()) return plan_.cancel();
   release_.drop("it stays where it is");

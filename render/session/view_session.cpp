@@ -18,6 +18,7 @@ ViewSession::ViewSession(FrontEnd& front_end, const SessionSettings& settings)
     : state_{.front_end = front_end, .settings = settings},
       recent_(settings.keeps_files ? settings_file("recent") : std::filesystem::path{}),
       loader_(state_),
+      ct_(state_.retired, state_.waker(), state_.threads()),
       plan_(state_),
       moving_(state_.retired, state_.waker()),
       readying_(state_.retired, state_.waker()),
@@ -32,7 +33,9 @@ ViewSession::ViewSession(FrontEnd& front_end, const SessionSettings& settings)
 
 void ViewSession::take_patient() {
   if (!loader_.job().done()) return;
+  const bool of_ct = loader_.makes_ct();
   auto loaded = loader_.take();
+  if (of_ct && loaded) ct_.close();
   if (!loaded) {
     if (!saving_session_.recovering()) return;
     saving_session_.recovery_failed();
@@ -254,6 +257,7 @@ WindowScene ViewSession::scene_of_patient() const {
   scene.has_midsagittal_plane = midsagittal_plane(*state_.patient).has_value();
   scene.case_folder = state_.patient->folder;
   scene.session = state_.session;
+  scene.ct = ct_.view();
   scene.landmarks = scene.landmarks_in_use = landmarks_of(patient);
   scene.motions = motion_names(state_.patient->scene);
   scene.motion = asked_;
@@ -346,7 +350,8 @@ void ViewSession::show_progress() {
     busy_with_ = std::move(words);
     return true;
   };
-  if (show(loader_.job(), state_.patient != nullptr) || show(plan_.checking(), true) ||
+  if (show(loader_.job(), state_.patient != nullptr || loader_.makes_ct()) ||
+      show(ct_.job(), true) || show(plan_.checking(), true) ||
       show(moving_, false) || show(release_.job(), true) || show(saving_, false) ||
       show(plan_.splinting(), false) || show(plan_.colliding(), false) ||
       show(plan_.predicting(), true) || show(readying_, false))
@@ -360,6 +365,7 @@ void ViewSession::turn() {
   for (const Request& request : state_.front_end.take_requests()) carry_out(request);
   state_.retired.sweep();
   take_patient();
+  take_ct();
   take_plan();
   const bool has_splint = plan_.take_splint();
   if (has_splint) state_.scene.plan = plan_.view();

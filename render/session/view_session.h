@@ -14,6 +14,7 @@
 #include "render/session/recording_session.h"
 #include "render/session/release_session.h"
 #include "render/session/saving_session.h"
+#include "sim/ct_session/ct_import.h"
 #include "sim/session/recent_files.h"
 
 namespace condyle {
@@ -62,6 +63,13 @@ class ViewSession {
   void take_chosen_files();
   void take_saved_session();
 
+  // ct_requests.cpp:
+  void open_scan(const std::filesystem::path& scan);
+  void make_ct_patient(const std::filesystem::path& folder);
+  void take_ct();
+  void show_ct();
+  void close_ct();
+
   void take_patient();
   void take_plan();
   void install(std::shared_ptr<const SessionPatient> patient, std::string_view why);
@@ -100,6 +108,7 @@ class ViewSession {
   std::optional<ViewState> resumed_;  // of an opened session, until its motion is there
 
   PatientLoader loader_;
+  CtImport ct_;
   PlanSession plan_;
   Job<std::shared_ptr<const SessionMotion>> moving_;
   Job<bool> readying_;  // bones to slide

@@ -82,6 +82,7 @@ Window::State::State(const WindowOptions& given) : options(given), arrangement(g
 Window::State::~State() {
   if (window) glfwHideWindow(window);  // hidden at once, even while a picture is being drawn
   render_thread.reset();
+  ct_textures = {};
   texture.reset();
   if (imgui) {
     ImGui_ImplOpenGL3_Shutdown();

@@ -149,6 +149,27 @@ void Window::State::scale_panels(Command command) {
   noticed();
 }
 
+/// Uploads the pictures of a CT that have changed. Returns their textures; 0: none.
+std::array<std::uintptr_t, 4> Window::State::show_ct_pictures() {
+  std::array<std::uintptr_t, 4> names = {};
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    std::shared_ptr<const CtPixels> pixels;
+    if (scene.ct) pixels = i < 3 ? scene.ct->slices[i].picture : scene.ct->solid;
+    std::optional<CtTexture>& shown = ct_textures[i];
+    if (!pixels) {
+      shown.reset();
+      continue;
+    }
+    if (!shown) shown.emplace();
+    if (shown->pixels != pixels) {
+      shown->texture.upload(pixels->width, pixels->height, pixels->rgba.data());
+      shown->pixels = std::move(pixels);
+    }
+    names[i] = shown->texture.name();
+  }
+  return names;
+}
+
 void Window::State::interface_frame() {
   fit_scale();
   ImGui_ImplOpenGL3_NewFrame();
@@ -224,7 +245,8 @@ void Window::State::interface_frame() {
       .unfinished = work.unfinished,
       .recording_folder = options.recording_folder,
       .recording_folder_name = options.recording_folder_name,
-      .file_dialog = options.file_dialog};
+      .file_dialog = options.file_dialog,
+      .ct_pictures = show_ct_pictures()};
   const std::vector<Command> commands = panels->draw(shown, view, w, h);
   ImGui::Render();
   io.KeyCtrl = ctrl_of_keys;

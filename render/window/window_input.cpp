@@ -87,7 +87,7 @@ void Window::State::on_key(int key, int mods) {
 }
 
 bool Window::State::over_view(double x, double y) const {
-  if (panels->dialog_open() || !view_rect().contains(x, y)) return false;
+  if (scene.ct || panels->dialog_open() || !view_rect().contains(x, y)) return false;
   // The cube floats on the view.
   return std::none_of(panels->items().begin(), panels->items().end(), [&](const DrawnItem& item) {
     return item.panel.empty() && item.rect.contains(x, y);

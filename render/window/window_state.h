@@ -4,7 +4,9 @@
 #include <epoxy/gl.h>
 
 #include <Eigen/Geometry>
+#include <array>
 #include <chrono>
+#include <cstdint>
 #include <deque>
 #include <exception>
 #include <map>
@@ -18,6 +20,7 @@
 #include "render/window/input/mouse_queue.h"
 #include "render/window/input/picking.h"
 #include "render/window/picture/displayed_face.h"
+#include "render/window/picture/image_texture.h"
 #include "render/window/picture/picture_texture.h"
 #include "render/window/picture/quality.h"
 #include "render/window/picture/render_thread.h"
@@ -33,6 +36,12 @@ struct WindowComparison {
   std::shared_ptr<const FrameState> frame;
   bool by_hand = false;
   std::shared_ptr<const MapValues> values;  // its distances; none if they were not shown
+};
+
+/// A picture of a CT, and the pixels that it has.
+struct CtTexture {
+  ImageTexture texture;
+  std::shared_ptr<const CtPixels> pixels;
 };
 
 /// Background work and recordings, as the panels report them.
@@ -110,6 +119,7 @@ struct Window::State {
   ImGuiContext* imgui = nullptr;
   std::optional<Panels> panels;
   std::optional<PictureTexture> texture;
+  std::array<std::optional<CtTexture>, 4> ct_textures;  // three slices and the solid
   GLFWwindow* spare =
       nullptr;  // invisible: provides a context to the render_thread where EGL has none
   std::optional<RenderThread> render_thread;
@@ -208,6 +218,7 @@ struct Window::State {
   void fit_scale();
   void scale_panels(Command command);
   void interface_frame();
+  std::array<std::uintptr_t, 4> show_ct_pictures();
   std::string hover_text() const;
   void request_picture();
   bool take_picture();

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <fstream>
+#include <string_view>
 
 #include "render/window/panels/panels_drawing.h"
 
@@ -28,6 +30,15 @@ std::vector<fs::path> PanelFormState::OpenFields::chosen_files() const {
 
 namespace {
 
+/// Whether the file begins as one of a DICOM series.
+bool begins_as_dicom(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  char mark[4] = {};
+  stream.seekg(128);
+  stream.read(mark, 4);
+  return stream && std::string_view(mark, 4) == "DICM";
+}
+
 /// Reads a folder: its subfolders, and the files that can be opened, each sorted.
 void list_folder(PanelFormState::OpenFields& fields) {
   fields.listed = fields.folder;
@@ -35,6 +46,8 @@ void list_folder(PanelFormState::OpenFields& fields) {
   fields.files.clear();
   fields.chosen.clear();
   fields.anchor = 0;
+  fields.holds_scan = false;
+  int looked_at = 0;
   std::error_code error;
   for (auto it = fs::directory_iterator(fields.folder,
                                         fs::directory_options::skip_permission_denied, error);
@@ -46,12 +59,17 @@ void list_folder(PanelFormState::OpenFields& fields) {
       fields.folders.push_back(it->path());
       continue;
     }
+    constexpr int most_looked_at = 20;
+    if (!fields.holds_scan && it->is_regular_file(ignored) && looked_at++ < most_looked_at)
+      fields.holds_scan = begins_as_dicom(it->path());
     std::string ending = it->path().extension().string();
     std::transform(ending.begin(), ending.end(), ending.begin(),
                    [](unsigned char c) { return std::tolower(c); });
     for (const char* known : {".stl", ".ply", ".obj", ".glb", ".gltf", ".csv", ".motion", ".mot",
-                              ".sto", ".trc", ".raw", ".txt", ".json", ".condyle-session"})
-      if (ending == known && (ending != ".json" || name.ends_with(".mrk.json")))
+                              ".sto", ".trc", ".raw", ".txt", ".json", ".condyle-session", ".nrrd", ".nhdr",
+                              ".mha", ".mhd", ".nii", ".gz", ".dcm"})
+      if (ending == known && (ending != ".json" || name.ends_with(".mrk.json")) &&
+          (ending != ".gz" || name.ends_with(".nii.gz")))
         fields.files.push_back(it->path());
   }
   std::sort(fields.folders.begin(), fields.folders.end());
@@ -153,11 +171,10 @@ void Panels::Drawing::open_dialog() {
   folder_list(column, chosen);
   ImGui::PopStyleColor();
   const char* help[] = {
-      "A session, a patient's folder, a motion (CSV, .motion, .mot, .trc ...), or a patient's "
-      "surfaces (STL, PLY, OBJ,",
-      "glTF) and landmarks, several at once: Ctrl+click adds one, Shift+click all up to it. All "
-      "can "
-      "also be dropped here"};
+      "A session, a patient's folder, a motion (CSV, .motion, .mot, .trc ...), a CT (DICOM folder, "
+      "NRRD, NIfTI, MetaImage), or",
+      "a patient's surfaces (STL, PLY, OBJ, glTF) and landmarks, several at once: Ctrl+click adds "
+      "one, Shift+click all up to it"};
   for (const char* line : help) text(panels.theme_.small, palette().text_dim, line);
   open_path(chosen);
   if (!chosen.files.empty()) panels.requests_.push_back(request::Open{chosen.files});
@@ -202,6 +219,10 @@ void Panels::Drawing::folder_list(float column, OpenChoice& chosen) {
                     ImGuiWindowFlags_AlwaysUseWindowPadding);
   if (fields.folder.has_parent_path() && ImGui::Selectable(".."))
     fields.folder = fields.folder.parent_path();
+  if (fields.holds_scan) {
+    if (ImGui::Selectable("CT scan in this folder")) chosen.files = {fields.folder};
+    pen.mark("open:scan");
+  }
   const auto row = [&](const fs::path& path, const std::string& end, bool is_chosen = false) {
     const std::string label =
         fitted(theme.regular, path.filename().string() + end, column - pen.px(32));

@@ -42,6 +42,7 @@ struct PanelFormState {
     std::filesystem::path folder, listed;  // current one; the one that is listed
     std::vector<std::filesystem::path> folders, files;
     std::set<std::size_t> chosen;  // indices of selected files
+    bool holds_scan = false;       // the listed folder has DICOM files
     std::size_t anchor = 0;        // start of a Shift+click range
     bool accepted = false;         // Enter: open the selection
 
@@ -59,6 +60,15 @@ struct PanelFormState {
     std::string path;
     bool accepted = false;  // Enter: save
   } session;
+  struct CtFields {
+    enum class Click { cross, skull, jaw };
+    int opened = 0;       // the import that the fields belong to
+    CtChoice choice;      // as the user has changed it
+    CtChoice asked;       // that was requested last
+    int series = 0;       // chosen in the list
+    Click click = Click::cross;  // what a click on a slice sets
+    std::string folder;   // of the patient
+  } ct;
   std::optional<Question> question;
   std::optional<request::Import> import;  // surfaces that wait for their roles
 };

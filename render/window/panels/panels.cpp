@@ -103,9 +103,10 @@ void Panels::say(const std::string& sentence) {
 
 void Panels::request(Request request) {
   const auto is_preview = [](const Request& each) {
-    return std::holds_alternative<request::PreviewCut>(each);
+    return std::holds_alternative<request::PreviewCut>(each) ||
+           std::holds_alternative<request::ShowCt>(each);
   };
-  if (is_preview(request) && !requests_.empty() && is_preview(requests_.back()))
+  if (is_preview(request) && !requests_.empty() && requests_.back().index() == request.index())
     requests_.back() = std::move(request);
   else
     requests_.push_back(std::move(request));
@@ -289,10 +290,13 @@ bool Panels::takes(Command command) const {
     case Command::window_picture:
     case Command::quit:
       return true;
+    case Command::open_files:
+    case Command::toggle_theme:
+      return !dialog_open();
     case Command::help:
       return !dialog_open() || (help_open_ && errors_.empty() && !form_.question);
     default:
-      return !dialog_open();
+      return !dialog_open() && !ct_open_;
   }
 }
 
@@ -375,6 +379,13 @@ std::vector<Command> Panels::draw(const PanelInput& input, ViewState& view, doub
       height,
       Pen{theme_, items_, tooltip_, ""},
       {}};
+  ct_open_ = input.scene.ct != nullptr;
+  if (ct_open_) {
+    drawing.ct();
+    drawing.dialogs();
+    ImGui::PopFont();
+    return std::move(drawing.commands);
+  }
   if (shown_ && !preparing) {
     drawing.top_bar();
     drawing.parts();
@@ -415,7 +426,7 @@ void Panels::Drawing::top_bar() {
   if (word_button(pen, "open-files", "Open", {open_width, side}, false))
     panels.run(Command::open_files, input.scene, view);
   tooltip(pen,
-          "A session, a patient, a motion or surfaces; they can also be dropped on the window. "
+          "A session, a patient, a motion, surfaces or a CT; they can also be dropped on the window. "
           "Ctrl+O");
   ImGui::SameLine(0, gap);
   const float save_width = width_of("Save");

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <array>
+#include <cstdint>
 #include <deque>
 #include <memory>
 #include <span>
@@ -47,6 +48,8 @@ struct PanelInput {
   std::filesystem::path recording_folder = ".";
   std::string recording_folder_name = {};  // "your videos folder"
   bool file_dialog = false;                // the desktop has one
+  // Textures of the CT that is imported: three slices and the solid; 0: none.
+  std::array<std::uintptr_t, 4> ct_pictures = {};
 };
 
 /// A panel, or a control in it, as last drawn. Names: panels "top", "left", "right",
@@ -176,6 +179,7 @@ class Panels {
   bool run_session(Command command, const WindowScene& scene);  // panel_session.cpp
   Theme theme_;
   bool shown_ = true, help_open_ = false;
+  bool ct_open_ = false;  // a CT is imported, in the place of the patient
   PanelSizes sizes_;
   double gripped_size_ = 0;  // size at the grip of the panel being resized
   double skin_before_ = 1;   // opacity to restore

@@ -44,6 +44,7 @@ struct Panels::Drawing {
   void view_signs();  // panel_view.cpp: letters at the edges, cube, progress
   void cutting();     // panel_cut.cpp: the drawn cut, and handles of the plan
   void part_menu();   // panel_part_menu.cpp
+  void ct();          // panel_ct.cpp: the import of a CT, in the place of all others
   void dialogs();     // panel_dialogs.cpp
   void question_dialog();
   void session_dialog();  // panel_session.cpp
@@ -95,6 +96,17 @@ struct Panels::Drawing {
   void plan_buttons();
   bool plan_table(const char* name, const char* title, const std::vector<PlanMeasure>& rows);
   void edit_plan(PlanEdit edit);
+  // panel_ct.cpp
+  void ct_series(float high);
+  void ct_controls();
+  void ct_threshold();
+  void ct_seeds();
+  void ct_making();
+  void ct_progress();
+  // panel_ct_slices.cpp
+  void ct_pictures(const ViewRect& place);
+  void ct_slice(std::size_t which, const ViewRect& place);
+  void ct_solid(const ViewRect& place);
   // panel_record.cpp
   void record();
   float record_label(const char* words);

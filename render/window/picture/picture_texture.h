@@ -1,6 +1,6 @@
 #pragma once
 
-#include "render/gl/gl_objects.h"
+#include "render/window/picture/image_texture.h"
 #include "render/window/picture/render_request.h"
 
 namespace condyle {
@@ -12,13 +12,12 @@ class PictureTexture {
   /// Uploads the pixels.
   void show(const DrawnPicture& picture);
   /// GL texture, its first row at the bottom, opaque.
-  unsigned name() const { return texture_; }
+  unsigned name() const { return texture_.name(); }
   /// The patient that it shows; none before the first picture.
   const std::shared_ptr<const DrawnParts>& parts() const { return parts_; }
 
  private:
-  GlTexture texture_;
-  int width_ = 0, height_ = 0;
+  ImageTexture texture_;
   std::shared_ptr<const DrawnParts> parts_;
 };
 

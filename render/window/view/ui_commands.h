@@ -12,6 +12,7 @@
 #include "render/camera/camera.h"
 #include "render/scene/scene_renderer.h"
 #include "render/window/view/record_choice.h"
+#include "sim/choice/ct_view.h"
 #include "sim/choice/file_role.h"
 #include "sim/choice/motion_choice.h"
 #include "sim/choice/plan_view.h"
@@ -109,6 +110,20 @@ struct Browse {
   Purpose purpose = Purpose::open;
   std::filesystem::path start;  // the file or folder that it shows first
 };
+/// Reads a series of the CT that is imported.
+struct ReadSeries {
+  int number = 0;
+};
+/// Shows what was chosen of the CT; of successive ones the last counts.
+struct ShowCt {
+  CtChoice choice;
+};
+/// Makes the patient of the CT as chosen last, in a new folder.
+struct MakeCtPatient {
+  std::filesystem::path folder;
+};
+/// Leaves the import of the CT.
+struct CloseCt {};
 }  // namespace request
 
 using Request =
@@ -117,7 +132,8 @@ using Request =
                  request::Cancel, request::Release, request::SaveCase, request::UseLandmarks,
                  request::EditPlan, request::PreviewCut, request::ShowHandles, request::MakeSplint,
                  request::HideSplint, request::SavePlan, request::SaveSession, request::Recover,
-                 request::Browse>;
+                 request::Browse, request::ReadSeries, request::ShowCt, request::MakeCtPatient,
+                 request::CloseCt>;
 
 /// A question to the user before something is done.
 struct Question {

@@ -50,6 +50,7 @@ struct WindowScene {
   PlanView plan = {};                              // of the operation
   std::shared_ptr<const FrameState> before = {};   // the operation; none without moves
   std::filesystem::path session = {};              // file of the session; empty: not saved
+  std::shared_ptr<const CtView> ct = {};           // that is imported; none: no import
   bool has_midsagittal_plane = false;  // landmarks define one, by which parts can be mirrored
 };
 

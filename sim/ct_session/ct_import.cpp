@@ -1,0 +1,245 @@
+#include "sim/ct_session/ct_import.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+
+#include "engine/core/error.h"
+#include "engine/dicom/ct_volume.h"
+#include "engine/volume/volume_files.h"
+#include "sim/case/case_io.h"
+#include "sim/ct_session/slice_picture.h"
+#include "sim/phantom/phantom.h"
+
+namespace condyle {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr int solid_pixels = 360;
+constexpr double lowest_bone_hu = -200, highest_bone_hu = 2500;  // as --threshold is useful
+
+/// The name without the ending of a volume.
+std::string stem_of(const fs::path& scan) {
+  std::string name = scan.filename().string();
+  for (const char* ending : {".nii.gz", ".nrrd", ".nhdr", ".mha", ".mhd", ".nii"})
+    if (name.ends_with(ending) && name.size() > std::string(ending).size())
+      return name.substr(0, name.size() - std::string(ending).size());
+  return name;
+}
+
+fs::path free_folder_beside(const fs::path& scan) {
+  std::error_code ignored;
+  const fs::path whole = (fs::absolute(scan, ignored) / "").lexically_normal().parent_path();
+  const std::string name = stem_of(whole) + "-patient";
+  fs::path folder = whole.parent_path() / name;
+  for (int i = 2; fs::exists(folder, ignored); ++i)
+    folder = whole.parent_path() / fmt::format("{}-{}", name, i);
+  return folder;
+}
+
+/// throws: InputError where the folder cannot take a new case, before the work begins.
+void check_new_folder(const fs::path& folder) {
+  if (folder.empty())
+    throw InputError("the patient needs a folder: type one that does not exist yet");
+  std::error_code ignored;
+  if (fs::exists(folder, ignored) &&
+      !(fs::is_directory(folder, ignored) && fs::is_empty(folder, ignored)))
+    throw InputError(folder, "", "exists already: the patient needs a new or an empty folder");
+  fs::path above = fs::absolute(folder, ignored);
+  while (!fs::exists(above, ignored) && above.has_relative_path()) above = above.parent_path();
+  if (!fs::is_directory(above, ignored) || ::access(above.c_str(), W_OK) != 0)
+    throw InputError(folder, "", "cannot be written: choose another folder for the patient");
+}
+
+}  // namespace
+
+std::optional<fs::path> scan_of(const std::vector<fs::path>& files) {
+  if (files.empty()) return {};
+  const fs::path& one = files.front();
+  std::error_code ignored;
+  if (fs::is_directory(one, ignored)) return holds_dicom(one) ? std::optional(one) : std::nullopt;
+  if (is_volume_file(one)) return one;
+  if (!is_dicom_file(one)) return {};
+  const fs::path folder = fs::absolute(one, ignored).parent_path();
+  return folder;
+}
+
+Case make_ct_patient(const CtMaking& making, const Progress& progress) {
+  const Case model = builtin_patient(progress);
+  CtCase made = case_of_ct(making.scan->ct.volume, model, making.request, progress);
+  const auto& notes = making.scan->ct.notes;
+  made.patient.notes.insert(made.patient.notes.begin(), notes.begin(), notes.end());
+  report(progress, "saving the patient", 0.97);
+  save_case(made.patient, making.folder);
+  return load_case(making.folder);
+}
+
+void CtImport::show(const std::function<void(CtView&)>& edit) {
+  auto view = view_ ? std::make_shared<CtView>(*view_) : std::make_shared<CtView>();
+  edit(*view);
+  view_ = std::move(view);
+}
+
+void CtImport::open(const fs::path& scan) {
+  close();
+  path_ = scan;
+  std::error_code ignored;
+  const bool is_folder = fs::is_directory(scan, ignored);
+  show([&](CtView& view) {
+    view.opened = ++opened_;
+    view.name = (scan / "").parent_path().filename().string();
+    view.case_folder = free_folder_beside(scan);
+    if (!is_folder) {
+      view.series = {{.number = 0, .facts = "One volume", .readable = true}};
+      view.best = 0;
+    }
+  });
+  if (!is_folder) return start_reading(0);
+  job_.start([scan, threads = threads_](const Progress& progress) {
+    report(progress, "listing the series", 0);
+    const Progress listing = [&](std::string_view, double fraction) {
+      report(progress, "listing the series", fraction);
+    };
+    return Done{.folder = std::make_shared<const CtFolder>(scan, threads, listing), .scan = {}};
+  });
+}
+
+void CtImport::read(int series) {
+  if (!view_ || making() || !folder_) return;
+  const auto known = std::find_if(view_->series.begin(), view_->series.end(),
+                                  [&](const CtSeriesItem& one) { return one.number == series; });
+  if (known != view_->series.end()) start_reading(series);
+}
+
+void CtImport::start_reading(int series) {
+  scan_.reset();
+  show([](CtView& view) { view.stage = CtStage::reading; });
+  job_.start([path = path_, folder = folder_, series, threads = threads_](const Progress& progress) {
+    report(progress, "reading the scan", 0);
+    const Progress reading = [&](std::string_view, double fraction) {
+      report(progress, "reading the scan", 0.8 * fraction);
+    };
+    const CtRequest request{.series = series, .threads = threads};
+    auto scan = std::make_shared<ReadScan>();
+    scan->ct = folder ? folder->read(request, reading) : ct_volume(path, request, reading);
+    report(progress, "reading the scan", 0.8);
+    scan->levels = tissue_levels(scan->ct.volume, path.string());
+    scan->solid = std::make_shared<const SolidScan>(scan->ct.volume, scan->levels.low_bone(),
+                                                    threads);
+    return Done{.folder = {}, .scan = std::move(scan)};
+  });
+}
+
+void CtImport::list_series(const CtFolder& folder) {
+  show([&](CtView& view) {
+    view.stage = CtStage::series;
+    view.notes = folder.notes();
+    for (const CtSeries& one : folder.series()) {
+      CtSeriesItem item{one.number, series_facts(one), one.notes, one.readable(false)};
+      for (const std::string& problem : one.problems) item.remarks.push_back("refused: " + problem);
+      if (!one.uneven.empty()) item.remarks.push_back("refused: " + one.uneven);
+      view.series.push_back(std::move(item));
+    }
+    try {
+      const int best = folder.default_series(false);
+      for (std::size_t i = 0; i < view.series.size(); ++i)
+        if (view.series[i].number == best) view.best = static_cast<int>(i);
+    } catch (const InputError& error) {
+      view.no_best = error.what();
+    }
+  });
+}
+
+void CtImport::draw(CtView& view, bool slices, bool solid) const {
+  const Volume& volume = scan_->ct.volume;
+  const SliceLevels levels{choice_.threshold_hu, scan_->levels.skin()};
+  for (std::size_t i = 0; slices && i < 3; ++i)
+    view.slices[i] =
+        draw_slice(volume, static_cast<SliceSide>(i), choice_.cross, levels, threads_);
+  if (solid)
+    view.solid = std::make_shared<const CtPixels>(scan_->solid->picture(
+        solid_pixels, choice_.threshold_hu, choice_.turn_deg, choice_.tilt_deg, threads_));
+}
+
+void CtImport::show_scan(std::shared_ptr<const ReadScan> scan) {
+  scan_ = std::move(scan);
+  choice_ = {.cross = centre_of(scan_->ct.volume), .threshold_hu = scan_->levels.low_bone()};
+  show([&](CtView& view) {
+    view.stage = CtStage::slices;
+    view.volume_notes = scan_->ct.notes;
+    view.first = choice_;
+    view.lowest_hu = lowest_bone_hu;
+    view.highest_hu = highest_bone_hu;
+    ++opened_;
+    view.opened = opened_;  // choices of another volume are void
+    draw(view, true, true);
+  });
+}
+
+void CtImport::choose(const CtChoice& choice) {
+  if (!scan_ || !view_ || choice == choice_) return;
+  const bool threshold = choice.threshold_hu != choice_.threshold_hu;
+  const bool slices = threshold || choice.cross != choice_.cross;
+  const bool solid = threshold || choice.turn_deg != choice_.turn_deg ||
+                     choice.tilt_deg != choice_.tilt_deg;
+  choice_ = choice;
+  show([&](CtView& view) { draw(view, slices, solid); });
+}
+
+CtMaking CtImport::begin_making(const fs::path& folder) {
+  if (!scan_) throw InputError("no scan has been read yet");
+  check_new_folder(folder);
+  CtMaking making{.scan = scan_, .request = {}, .folder = folder};
+  CtCaseRequest& request = making.request;
+  request.name = (folder / "").parent_path().filename().string();
+  request.source = path_.string();
+  request.threads = threads_;
+  if (choice_.threshold_hu != view_->first.threshold_hu)
+    request.threshold_hu = choice_.threshold_hu;
+  for (const CtSeed& seed : choice_.seeds)
+    request.seeds.push_back({seed.position, seed.in_jaw ? mandible_label : skull_label});
+  show([](CtView& view) { view.stage = CtStage::making; });
+  return making;
+}
+
+void CtImport::end_making() {
+  if (making()) show([](CtView& view) { view.stage = CtStage::slices; });
+}
+
+void CtImport::cancel() {
+  if (!job_.active()) return;
+  job_.drop();
+  if (!folder_) return close();
+  show([](CtView& view) { view.stage = CtStage::series; });
+}
+
+void CtImport::close() {
+  job_.drop();
+  view_.reset();
+  scan_.reset();
+  folder_.reset();
+  choice_ = {};
+}
+
+bool CtImport::update() {
+  if (!job_.done()) return false;
+  try {
+    const auto done = job_.take();
+    if (!done) return false;
+    if (done->folder) {
+      folder_ = done->folder;
+      list_series(*folder_);
+    }
+    if (done->scan) show_scan(done->scan);
+  } catch (...) {
+    if (folder_)
+      show([](CtView& view) { view.stage = CtStage::series; });
+    else
+      close();
+    throw;
+  }
+  return true;
+}
+
+}  // namespace condyle
