@@ -4,6 +4,8 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 
 #include "engine/core/error.h"
 #include "engine/dicom/ct_volume.h"
@@ -50,6 +52,41 @@ void check_new_folder(const fs::path& folder) {
   while (!fs::exists(above, ignored) && above.has_relative_path()) above = above.parent_path();
   if (!fs::is_directory(above, ignored) || ::access(above.c_str(), W_OK) != 0)
     throw InputError(folder, "", "cannot be written: choose another folder for the patient");
+}
+
+/// Whether a value within 4 mm of the point is as high as bone.
+bool is_near_bone(const Volume& volume, const Eigen::Vector3d& point, double threshold_hu) {
+  constexpr double reach_mm = 4;  // as seed_labels() searches
+  const Eigen::Vector3d at =
+      (volume.axes.transpose() * (point - volume.origin)).cwiseQuotient(volume.spacing_mm);
+  std::array<int, 3> low, high;
+  for (std::size_t a = 0; a < 3; ++a) {
+    const auto axis = static_cast<Eigen::Index>(a);
+    const double reach = reach_mm / volume.spacing_mm[axis];
+    low[a] = std::max(0, static_cast<int>(std::ceil(at[axis] - reach)));
+    high[a] = std::min(volume.size[a] - 1, static_cast<int>(std::floor(at[axis] + reach)));
+  }
+  for (int k = low[2]; k <= high[2]; ++k)
+    for (int j = low[1]; j <= high[1]; ++j)
+      for (int i = low[0]; i <= high[0]; ++i)
+        if (volume.at(i, j, k) >= threshold_hu &&
+            (volume.position(i, j, k) - point).norm() <= reach_mm)
+          return true;
+  return false;
+}
+
+/// On seeds that are not on bone; empty if all are.
+std::string remark_on_seeds(const Volume& volume, const CtChoice& choice) {
+  std::string numbers;
+  int count = 0;
+  for (std::size_t i = 0; i < choice.seeds.size(); ++i) {
+    if (is_near_bone(volume, choice.seeds[i].position, choice.threshold_hu)) continue;
+    numbers += fmt::format("{}{}", count++ == 0 ? "" : ", ", i + 1);
+  }
+  if (count == 0) return {};
+  return fmt::format("{} {}: no bone above {:.0f} HU within 4 mm; remove {}",
+                     count == 1 ? "Seed" : "Seeds", numbers, choice.threshold_hu,
+                     count == 1 ? "it" : "them");
 }
 
 }  // namespace
@@ -184,11 +221,16 @@ void CtImport::choose(const CtChoice& choice) {
   const bool solid = threshold || choice.turn_deg != choice_.turn_deg ||
                      choice.tilt_deg != choice_.tilt_deg;
   choice_ = choice;
-  show([&](CtView& view) { draw(view, slices, solid); });
+  show([&](CtView& view) {
+    view.seed_remark = remark_on_seeds(scan_->ct.volume, choice_);
+    draw(view, slices, solid);
+  });
 }
 
 CtMaking CtImport::begin_making(const fs::path& folder) {
   if (!scan_) throw InputError("no scan has been read yet");
+  if (const std::string remark = remark_on_seeds(scan_->ct.volume, choice_); !remark.empty())
+    throw InputError(remark);
   check_new_folder(folder);
   CtMaking making{.scan = scan_, .request = {}, .folder = folder};
   CtCaseRequest& request = making.request;

@@ -129,6 +129,11 @@ void Panels::Drawing::ct_seeds() {
           form.click == Click::cross
               ? "Where the jaws might not be told apart, mark bone of each with a few clicks."
               : "Click on bone in a slice.");
+  const std::string& remark = input.scene.ct->seed_remark;
+  if (!remark.empty()) {
+    wrapped(panels.theme_.small, palette().warning, remark);
+    pen.mark("ct-seed-remark", remark);
+  }
   const float gap = pen.px(button_gap);
   const ImVec2 half = {width_of_each(pen, ImGui::GetContentRegionAvail().x, 2), pen.px(26)};
   const auto tool = [&](const char* item, const char* label, Click click) {
