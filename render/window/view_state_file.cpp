@@ -57,6 +57,26 @@ nlohmann::json edits_of(const ViewState& view) {
           {"excitations", view.motion.excitations}};
 }
 
+/// The CT that is imported.
+nlohmann::json ct_of(const CtView& ct) {
+  constexpr const char* stages[] = {"listing", "series", "reading", "slices", "making"};
+  const auto& [cross, threshold_hu, seeds, turn_deg, tilt_deg] = ct.chosen;
+  nlohmann::json json = {{"stage", stages[static_cast<std::size_t>(ct.stage)]},
+                         {"name", ct.name},
+                         {"best", ct.best},
+                         {"notes", ct.notes},
+                         {"volume_notes", ct.volume_notes},
+                         {"threshold_hu", threshold_hu},
+                         {"seeds", seeds.size()},
+                         {"seed_remark", ct.seed_remark},
+                         {"turn_deg", turn_deg},
+                         {"tilt_deg", tilt_deg}};
+  json["cross_mm"] = {cross.x(), cross.y(), cross.z()};
+  for (const CtSeriesItem& one : ct.series) json["series"].push_back(one.facts);
+  for (const CtSliceView& slice : ct.slices) json["slices"].push_back(slice.number);
+  return json;
+}
+
 }  // namespace
 
 void ViewStateFile::update(const Window& window, const FrameState* frame,
@@ -109,6 +129,7 @@ void ViewStateFile::update(const Window& window, const FrameState* frame,
                   {"folder", window.scene().case_folder.string()}};
   json["notes"] = window.scene().notes;
   json["drawn_points"] = view.drawn_cut.points.size();
+  if (window.scene().ct) json["ct"] = ct_of(*window.scene().ct);
   if (view.selected) json["selected"] = window.scene().parts[*view.selected].name;
   json["recent"] = nlohmann::json::array();
   for (const auto& path : window.scene().recent) json["recent"].push_back(path.string());

@@ -67,7 +67,8 @@ struct CtView {
   std::string no_best = {};             // why there is none
   // Of the volume that was read:
   std::vector<std::string> volume_notes = {};
-  CtChoice first = {};  // before the user changes it
+  CtChoice first = {};   // before the user changes it
+  CtChoice chosen = {};  // as drawn
   std::string seed_remark = {};  // on seeds that are not on bone
   double lowest_hu = -200, highest_hu = 2000;
   std::array<CtSliceView, 3> slices = {};        // axial, coronal, sagittal

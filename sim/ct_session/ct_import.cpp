@@ -205,7 +205,7 @@ void CtImport::show_scan(std::shared_ptr<const ReadScan> scan) {
   show([&](CtView& view) {
     view.stage = CtStage::slices;
     view.volume_notes = scan_->ct.notes;
-    view.first = choice_;
+    view.first = view.chosen = choice_;
     view.lowest_hu = lowest_bone_hu;
     view.highest_hu = highest_bone_hu;
     ++opened_;
@@ -222,6 +222,7 @@ void CtImport::choose(const CtChoice& choice) {
                      choice.tilt_deg != choice_.tilt_deg;
   choice_ = choice;
   show([&](CtView& view) {
+    view.chosen = choice_;
     view.seed_remark = remark_on_seeds(scan_->ct.volume, choice_);
     draw(view, slices, solid);
   });
