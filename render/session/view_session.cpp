@@ -59,6 +59,9 @@ void ViewSession::take_patient() {
   if (!state_.patient->trouble.empty())
     state_.front_end.report_error("Cannot build the soft tissue",
                                   state_.in_words(state_.patient->trouble));
+  if (of_ct)
+    state_.front_end.say("Saved the patient in " + state_.patient->folder.string() +
+                         ". Check its landmarks: key B");
   want_motion(asked_);
 }
 

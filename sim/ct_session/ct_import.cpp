@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 
 #include "engine/core/error.h"
 #include "engine/dicom/ct_volume.h"
@@ -30,13 +31,17 @@ std::string stem_of(const fs::path& scan) {
   return name;
 }
 
-fs::path free_folder_beside(const fs::path& scan) {
+/// A new folder beside the scan, or in the user's home where the scan lies on a disc that cannot be
+/// written.
+fs::path folder_for_patient(const fs::path& scan) {
   std::error_code ignored;
   const fs::path whole = (fs::absolute(scan, ignored) / "").lexically_normal().parent_path();
   const std::string name = stem_of(whole) + "-patient";
-  fs::path folder = whole.parent_path() / name;
-  for (int i = 2; fs::exists(folder, ignored); ++i)
-    folder = whole.parent_path() / fmt::format("{}-{}", name, i);
+  fs::path above = whole.parent_path();
+  const char* home = std::getenv("HOME");
+  if (::access(above.c_str(), W_OK) != 0 && home) above = home;
+  fs::path folder = above / name;
+  for (int i = 2; fs::exists(folder, ignored); ++i) folder = above / fmt::format("{}-{}", name, i);
   return folder;
 }
 
@@ -126,7 +131,7 @@ void CtImport::open(const fs::path& scan) {
   show([&](CtView& view) {
     view.opened = ++opened_;
     view.name = (scan / "").parent_path().filename().string();
-    view.case_folder = free_folder_beside(scan);
+    view.case_folder = folder_for_patient(scan);
     if (!is_folder) {
       view.series = {{.number = 0, .facts = "One volume", .readable = true}};
       view.best = 0;

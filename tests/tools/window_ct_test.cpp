@@ -78,11 +78,13 @@ TEST_F(WindowCt, OpensTheMouthOfAFolderOfDicomFiles) {
   EXPECT_TRUE(drop_files("Condyle", {folder_ / "scan"}));
   ASSERT_TRUE(wait_for_stage("series"));
   see("series");
+  EXPECT_EQ(state().dump().find("Jane"), std::string::npos) << "a name below the folder is shown";
   EXPECT_EQ(state()["ct"]["best"], 0);
   EXPECT_NE(state()["ct"]["series"].dump().find("2 x 2 x 2 mm apart"), std::string::npos);
   click("ct-read");
   ASSERT_TRUE(wait_for_stage("slices"));
   see("slices");
+  EXPECT_EQ(state().dump().find("Jane"), std::string::npos) << "a name below the folder is shown";
   const Json shown = state()["ct"];
 
   // The crosshair: a click moves it, the wheel scrolls.

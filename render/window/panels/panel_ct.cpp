@@ -32,6 +32,9 @@ void Panels::Drawing::ct() {
 
   const bool slices = ct.stage == CtStage::slices || ct.stage == CtStage::making;
   const double column = std::round(pen.px(ct_column)), gap = std::max(1.0, std::round(double{pen.px(1)}));
+  ImGui::GetBackgroundDrawList()->AddRectFilled(
+      {0, 0}, {static_cast<float>(display_width), static_cast<float>(display_height)},
+      palette().window);  // in front of the patient
   begin_panel(pen, "ct", {0, 0, slices ? column : display_width, display_height});
   heading(pen, "CT");
   wrapped(panels.theme_.bold, palette().text, ct.name);
@@ -92,9 +95,13 @@ void Panels::Drawing::ct_controls() {
   ct_threshold();
   ct_seeds();
   ImGui::EndDisabled();
+  ct_making();
+  if (ct.volume_notes.empty() || ImGui::GetContentRegionAvail().y < pen.px(40)) return;
+  heading(pen, "Notes");
+  ImGui::BeginChild("ct-notes", {0, 0});
   for (const std::string& note : ct.volume_notes)
     wrapped(panels.theme_.small, palette().text_dim, note);
-  ct_making();
+  ImGui::EndChild();
 }
 
 void Panels::Drawing::ct_threshold() {
