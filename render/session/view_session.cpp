@@ -354,10 +354,9 @@ void ViewSession::show_progress() {
     return true;
   };
   if (show(loader_.job(), state_.patient != nullptr || loader_.makes_ct()) ||
-      show(ct_.job(), true) || show(plan_.checking(), true) ||
-      show(moving_, false) || show(release_.job(), true) || show(saving_, false) ||
-      show(plan_.splinting(), false) || show(plan_.colliding(), false) ||
-      show(plan_.predicting(), true) || show(readying_, false))
+      show(ct_.job(), true) || show(plan_.checking(), true) || show(moving_, false) ||
+      show(release_.job(), true) || show(saving_, false) || show(plan_.splinting(), false) ||
+      show(plan_.colliding(), false) || show(plan_.predicting(), true) || show(readying_, false))
     return;
   state_.front_end.show_progress("", 1);
   busy_with_ = recording_.active() ? "recording" : "";

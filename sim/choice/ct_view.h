@@ -43,15 +43,15 @@ struct CtPixels {
 
 /// A slice as drawn: grey values in the window of bone, with the outlines of bone and skin.
 struct CtSliceView {
-  std::string name = {};                                    // "Axial"
-  std::shared_ptr<const CtPixels> picture = {};             // none: not drawn yet
-  double width_mm = 1, height_mm = 1;                       // of the picture
-  Eigen::Vector3d corner = Eigen::Vector3d::Zero();         // its top left one, mm
-  Eigen::Vector3d right = Eigen::Vector3d::UnitX();         // unit directions in the picture
+  std::string name = {};                             // "Axial"
+  std::shared_ptr<const CtPixels> picture = {};      // none: not drawn yet
+  double width_mm = 1, height_mm = 1;                // of the picture
+  Eigen::Vector3d corner = Eigen::Vector3d::Zero();  // its top left one, mm
+  Eigen::Vector3d right = Eigen::Vector3d::UnitX();  // unit directions in the picture
   Eigen::Vector3d down = Eigen::Vector3d::UnitY();
-  Eigen::Vector3d step = Eigen::Vector3d::UnitZ();          // to the next slice, mm
-  std::array<std::string, 4> sides = {};  // letters at the left, right, top and bottom
-  int number = 0, count = 0;              // of the slice, from 1, and of all
+  Eigen::Vector3d step = Eigen::Vector3d::UnitZ();  // to the next slice, mm
+  std::array<std::string, 4> sides = {};            // letters at the left, right, top and bottom
+  int number = 0, count = 0;                        // of the slice, from 1, and of all
 };
 
 enum class CtStage { listing, series, reading, slices, making };
@@ -67,13 +67,13 @@ struct CtView {
   std::string no_best = {};             // why there is none
   // Of the volume that was read:
   std::vector<std::string> volume_notes = {};
-  CtChoice first = {};   // before the user changes it
-  CtChoice chosen = {};  // as drawn
+  CtChoice first = {};           // before the user changes it
+  CtChoice chosen = {};          // as drawn
   std::string seed_remark = {};  // on seeds that are not on bone
   double lowest_hu = -200, highest_hu = 2000;
-  std::array<CtSliceView, 3> slices = {};        // axial, coronal, sagittal
-  std::shared_ptr<const CtPixels> solid = {};    // 3-D view of the bone
-  std::filesystem::path case_folder = {};        // proposed for the patient
+  std::array<CtSliceView, 3> slices = {};      // axial, coronal, sagittal
+  std::shared_ptr<const CtPixels> solid = {};  // 3-D view of the bone
+  std::filesystem::path case_folder = {};      // proposed for the patient
 };
 
 }  // namespace condyle

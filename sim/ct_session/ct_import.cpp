@@ -157,20 +157,21 @@ void CtImport::read(int series) {
 void CtImport::start_reading(int series) {
   scan_.reset();
   show([](CtView& view) { view.stage = CtStage::reading; });
-  job_.start([path = path_, folder = folder_, series, threads = threads_](const Progress& progress) {
-    report(progress, "reading the scan", 0);
-    const Progress reading = [&](std::string_view, double fraction) {
-      report(progress, "reading the scan", 0.8 * fraction);
-    };
-    const CtRequest request{.series = series, .threads = threads};
-    auto scan = std::make_shared<ReadScan>();
-    scan->ct = folder ? folder->read(request, reading) : ct_volume(path, request, reading);
-    report(progress, "reading the scan", 0.8);
-    scan->levels = tissue_levels(scan->ct.volume, path.string());
-    scan->solid = std::make_shared<const SolidScan>(scan->ct.volume, scan->levels.low_bone(),
-                                                    threads);
-    return Done{.folder = {}, .scan = std::move(scan)};
-  });
+  job_.start(
+      [path = path_, folder = folder_, series, threads = threads_](const Progress& progress) {
+        report(progress, "reading the scan", 0);
+        const Progress reading = [&](std::string_view, double fraction) {
+          report(progress, "reading the scan", 0.8 * fraction);
+        };
+        const CtRequest request{.series = series, .threads = threads};
+        auto scan = std::make_shared<ReadScan>();
+        scan->ct = folder ? folder->read(request, reading) : ct_volume(path, request, reading);
+        report(progress, "reading the scan", 0.8);
+        scan->levels = tissue_levels(scan->ct.volume, path.string());
+        scan->solid =
+            std::make_shared<const SolidScan>(scan->ct.volume, scan->levels.low_bone(), threads);
+        return Done{.folder = {}, .scan = std::move(scan)};
+      });
 }
 
 void CtImport::list_series(const CtFolder& folder) {
@@ -197,8 +198,7 @@ void CtImport::draw(CtView& view, bool slices, bool solid) const {
   const Volume& volume = scan_->ct.volume;
   const SliceLevels levels{choice_.threshold_hu, scan_->levels.skin()};
   for (std::size_t i = 0; slices && i < 3; ++i)
-    view.slices[i] =
-        draw_slice(volume, static_cast<SliceSide>(i), choice_.cross, levels, threads_);
+    view.slices[i] = draw_slice(volume, static_cast<SliceSide>(i), choice_.cross, levels, threads_);
   if (solid)
     view.solid = std::make_shared<const CtPixels>(scan_->solid->picture(
         solid_pixels, choice_.threshold_hu, choice_.turn_deg, choice_.tilt_deg, threads_));
@@ -223,8 +223,8 @@ void CtImport::choose(const CtChoice& choice) {
   if (!scan_ || !view_ || choice == choice_) return;
   const bool threshold = choice.threshold_hu != choice_.threshold_hu;
   const bool slices = threshold || choice.cross != choice_.cross;
-  const bool solid = threshold || choice.turn_deg != choice_.turn_deg ||
-                     choice.tilt_deg != choice_.tilt_deg;
+  const bool solid =
+      threshold || choice.turn_deg != choice_.turn_deg || choice.tilt_deg != choice_.tilt_deg;
   choice_ = choice;
   show([&](CtView& view) {
     view.chosen = choice_;

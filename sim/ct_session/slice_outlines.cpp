@@ -61,17 +61,16 @@ std::vector<OutlinePiece> outlines(const std::vector<float>& values, int width, 
                                    double level) {
   std::vector<OutlinePiece> pieces;
   const auto value = [&](int x, int y) {
-    return static_cast<double>(values[static_cast<std::size_t>(y) *
-                                          static_cast<std::size_t>(width) +
-                                      static_cast<std::size_t>(x)]);
+    return static_cast<double>(
+        values[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
+               static_cast<std::size_t>(x)]);
   };
   for (int y = 0; y + 1 < height; ++y)
     for (int x = 0; x + 1 < width; ++x) {
       // Corners and edges in order around the cell.
       const std::array<double, 4> corner = {value(x, y), value(x + 1, y), value(x + 1, y + 1),
                                             value(x, y + 1)};
-      static constexpr std::array<std::array<int, 2>, 4> place = {
-          {{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
+      static constexpr std::array<std::array<int, 2>, 4> place = {{{0, 0}, {1, 0}, {1, 1}, {0, 1}}};
       std::array<Eigen::Vector2f, 4> crossing;
       int crossings = 0;
       for (std::size_t e = 0; e < 4; ++e) {

@@ -50,8 +50,7 @@ float between(const SliceValues& slice, float x, float y) {
 void draw_grey(const SliceValues& slice, const Enlarged& times, CtPixels& picture, int threads) {
   parallel_for(static_cast<std::size_t>(picture.height), threads, [&](std::size_t row) {
     std::uint8_t* out = &picture.rgba[row * static_cast<std::size_t>(picture.width) * 4];
-    const float y =
-        (static_cast<float>(row) + 0.5f) / static_cast<float>(times.y) - 0.5f;
+    const float y = (static_cast<float>(row) + 0.5f) / static_cast<float>(times.y) - 0.5f;
     for (int column = 0; column < picture.width; ++column) {
       const float x = (static_cast<float>(column) + 0.5f) / static_cast<float>(times.x) - 0.5f;
       const double light = (between(slice, x, y) - black_hu) / (white_hu - black_hu);
@@ -65,8 +64,7 @@ void draw_grey(const SliceValues& slice, const Enlarged& times, CtPixels& pictur
 float distance_to(const OutlinePiece& piece, const Vector2f& p) {
   const Vector2f along = piece[1] - piece[0];
   const float length2 = along.squaredNorm();
-  const float t =
-      length2 > 0 ? std::clamp((p - piece[0]).dot(along) / length2, 0.f, 1.f) : 0.f;
+  const float t = length2 > 0 ? std::clamp((p - piece[0]).dot(along) / length2, 0.f, 1.f) : 0.f;
   return (p - piece[0] - t * along).norm();
 }
 
@@ -87,11 +85,10 @@ void draw_outline(const std::vector<OutlinePiece>& pieces, const Enlarged& times
     };
     for (int y = first(low.y()); y <= last(high.y(), picture.height); ++y)
       for (int x = first(low.x()); x <= last(high.x(), picture.width); ++x) {
-        const float away =
-            distance_to(line, {static_cast<float>(x), static_cast<float>(y)});
-        float& most = covered[static_cast<std::size_t>(y) *
-                                  static_cast<std::size_t>(picture.width) +
-                              static_cast<std::size_t>(x)];
+        const float away = distance_to(line, {static_cast<float>(x), static_cast<float>(y)});
+        float& most =
+            covered[static_cast<std::size_t>(y) * static_cast<std::size_t>(picture.width) +
+                    static_cast<std::size_t>(x)];
         most = std::max(most, std::clamp(half + 0.5f - away, 0.f, 1.f));
       }
   }
@@ -126,8 +123,8 @@ CtSliceView draw_slice(const Volume& volume, SliceSide side, const Vector3d& poi
   const std::vector<float> smooth = smooth_values(slice);
   draw_outline(outer_outlines(smooth, slice.width, slice.height, levels.skin), times,
                {0x56, 0xb4, 0xe9}, *picture);
-  draw_outline(outlines(smooth, slice.width, slice.height, levels.bone), times,
-               {0xf0, 0xe4, 0x42}, *picture);
+  draw_outline(outlines(smooth, slice.width, slice.height, levels.bone), times, {0xf0, 0xe4, 0x42},
+               *picture);
 
   constexpr const char* names[] = {"Axial", "Coronal", "Sagittal"};
   CtSliceView view;

@@ -15,8 +15,7 @@ std::array<int, 3> lattice_axes(const Volume& volume) {
   double most = -1;
   do {
     double sum = 0;
-    for (int a = 0; a < 3; ++a)
-      sum += std::abs(volume.axes(a, order[static_cast<std::size_t>(a)]));
+    for (int a = 0; a < 3; ++a) sum += std::abs(volume.axes(a, order[static_cast<std::size_t>(a)]));
     if (sum > most + 1e-9) most = sum, best = order;
   } while (std::next_permutation(order.begin(), order.end()));
   return best;

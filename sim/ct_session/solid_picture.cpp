@@ -29,8 +29,7 @@ Volume thinned(const Volume& volume, const std::array<int, 3>& times, int thread
     coarse.size[a] = std::max(1, volume.size[a] / times[a]);
     coarse.spacing_mm[axis] = volume.spacing_mm[axis] * times[a];
   }
-  coarse.origin =
-      volume.position(0.5 * (times[0] - 1), 0.5 * (times[1] - 1), 0.5 * (times[2] - 1));
+  coarse.origin = volume.position(0.5 * (times[0] - 1), 0.5 * (times[1] - 1), 0.5 * (times[2] - 1));
   coarse.values.resize(count_of(coarse.size));
   const int total = times[0] * times[1] * times[2];
   parallel_for(static_cast<std::size_t>(coarse.size[2]), threads, [&](std::size_t slice) {
@@ -181,8 +180,8 @@ bool SolidScan::hits(const Vector3d& from, const Vector3d& direction, double thr
   return false;
 }
 
-CtPixels SolidScan::picture(int side_pixels, double threshold_hu, double turn_deg,
-                            double tilt_deg, int threads) const {
+CtPixels SolidScan::picture(int side_pixels, double threshold_hu, double turn_deg, double tilt_deg,
+                            int threads) const {
   constexpr double degree = std::numbers::pi / 180;
   const double t = turn_deg * degree, e = tilt_deg * degree;
   const Vector3d toward(std::sin(t) * std::cos(e), -std::cos(t) * std::cos(e), std::sin(e));
@@ -190,7 +189,8 @@ CtPixels SolidScan::picture(int side_pixels, double threshold_hu, double turn_de
   const auto lattice = [&](const Vector3d& v) {
     return Vector3d((coarse_.axes.transpose() * v).cwiseQuotient(coarse_.spacing_mm));
   };
-  const Vector3d ray = lattice(-toward), start = lattice(centre_ - coarse_.origin + 4 * radius_mm_ * toward);
+  const Vector3d ray = lattice(-toward),
+                 start = lattice(centre_ - coarse_.origin + 4 * radius_mm_ * toward);
   CtPixels picture{side_pixels, side_pixels, {}};
   const auto side = static_cast<std::size_t>(side_pixels);
   picture.rgba.assign(side * side * 4, 255);

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "engine/core/progress.h"
-#include "sim/choice/ct_view.h"
 #include "engine/volume/volume.h"
+#include "sim/choice/ct_view.h"
 
 namespace condyle {
 
@@ -14,8 +14,7 @@ namespace condyle {
 class SolidScan {
  public:
   /// `threshold_hu`: of the bone that a picture must hold.
-  SolidScan(const Volume& volume, double threshold_hu, int threads,
-            const Progress& progress = {});
+  SolidScan(const Volume& volume, double threshold_hu, int threads, const Progress& progress = {});
 
   /// The surface at a threshold, shaded, seen from a direction (see CtChoice) in parallel rays.
   CtPixels picture(int side_pixels, double threshold_hu, double turn_deg, double tilt_deg,
@@ -31,7 +30,7 @@ class SolidScan {
 
   Volume coarse_;
   std::array<int, 3> block_count_ = {0, 0, 0};
-  std::vector<std::int16_t> highest_;  // of blocks and the values next to them
+  std::vector<std::int16_t> highest_;                 // of blocks and the values next to them
   Eigen::Vector3d centre_ = Eigen::Vector3d::Zero();  // of the bone, mm
   double radius_mm_ = 100;
 };

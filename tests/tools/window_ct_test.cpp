@@ -29,9 +29,7 @@ class WindowCt : public WindowSession {
   }
   void close_error(const std::string& words) {
     EXPECT_TRUE(wait_until(
-        [&](const Json& s) {
-          return s.value("trouble", "").find(words) != std::string::npos;
-        },
+        [&](const Json& s) { return s.value("trouble", "").find(words) != std::string::npos; },
         longest_s))
         << state().value("trouble", "nothing was said");
     EXPECT_TRUE(press("Return"));
@@ -40,8 +38,8 @@ class WindowCt : public WindowSession {
   /// Clicks a slice at fractions of its width and height.
   void click_slice(const std::string& item, double across, double down) {
     const auto r = rect(item + ":slice");
-    EXPECT_TRUE(xdotool({"mousemove", px(r[0] + across * r[2]), px(r[1] + down * r[3]), "click",
-                         "1"}));
+    EXPECT_TRUE(
+        xdotool({"mousemove", px(r[0] + across * r[2]), px(r[1] + down * r[3]), "click", "1"}));
   }
   /// Whether the picture of an item changes within a second.
   bool changes_in_a_second(const std::string& item, const Picture& before) {
@@ -106,12 +104,13 @@ TEST_F(WindowCt, OpensTheMouthOfAFolderOfDicomFiles) {
   see("crosshair");
   const Picture before = seen_;
   const auto bar = rect("ct-threshold");
-  EXPECT_TRUE(xdotool({"mousemove", px(bar[0] + 0.6 * bar[2]), px(bar[1] + bar[3] / 2), "click", "1"}));
+  EXPECT_TRUE(
+      xdotool({"mousemove", px(bar[0] + 0.6 * bar[2]), px(bar[1] + bar[3] / 2), "click", "1"}));
   EXPECT_TRUE(changes_in_a_second("ct-coronal", before));
   EXPECT_GT(double(state()["ct"]["threshold_hu"]), 1000);
   click("ct-threshold-reset");
-  EXPECT_TRUE(wait_until(
-      [&](const Json& s) { return s["ct"]["threshold_hu"] == shown["threshold_hu"]; }));
+  EXPECT_TRUE(
+      wait_until([&](const Json& s) { return s["ct"]["threshold_hu"] == shown["threshold_hu"]; }));
 
   // Seeds: one in the air is named, and removed.
   click("ct-seed-jaw");
@@ -148,8 +147,8 @@ TEST_F(WindowCt, OpensTheMouthOfAFolderOfDicomFiles) {
   // The mouth opens.
   EXPECT_TRUE(press("k"));
   EXPECT_TRUE(press("space"));
-  EXPECT_TRUE(wait_until([](const Json& s) { return double(s["frame"]["opening_mm"]) > 20; },
-                         longest_s));
+  EXPECT_TRUE(
+      wait_until([](const Json& s) { return double(s["frame"]["opening_mm"]) > 20; }, longest_s));
   EXPECT_TRUE(press("space"));
   see("open");
   EXPECT_TRUE(press("ctrl+q"));

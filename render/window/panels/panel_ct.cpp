@@ -28,10 +28,12 @@ void Panels::Drawing::ct() {
             .asked = ct.first,
             .folder = ct.case_folder.string()};
   }
-  if (form.series == 0 && ct.best >= 0) form.series = ct.series[static_cast<std::size_t>(ct.best)].number;
+  if (form.series == 0 && ct.best >= 0)
+    form.series = ct.series[static_cast<std::size_t>(ct.best)].number;
 
   const bool slices = ct.stage == CtStage::slices || ct.stage == CtStage::making;
-  const double column = std::round(pen.px(ct_column)), gap = std::max(1.0, std::round(double{pen.px(1)}));
+  const double column = std::round(pen.px(ct_column)),
+               gap = std::max(1.0, std::round(double{pen.px(1)}));
   ImGui::GetBackgroundDrawList()->AddRectFilled(
       {0, 0}, {static_cast<float>(display_width), static_cast<float>(display_height)},
       palette().window);  // in front of the patient
@@ -58,10 +60,12 @@ void Panels::Drawing::ct_series(float high) {
   const CtView& ct = *input.scene.ct;
   PanelFormState::CtFields& form = panels.form_.ct;
   const Theme& theme = panels.theme_;
-  if (ct.stage == CtStage::listing || (ct.stage == CtStage::reading && ct.series.size() < 2)) return;
+  if (ct.stage == CtStage::listing || (ct.stage == CtStage::reading && ct.series.size() < 2))
+    return;
   text(theme.regular, palette().text_dim,
-       ct.series.size() == 1 ? "One series in this folder"
-                             : fmt::format("{} series in this folder: choose one", ct.series.size()));
+       ct.series.size() == 1
+           ? "One series in this folder"
+           : fmt::format("{} series in this folder: choose one", ct.series.size()));
   ImGui::PushStyleColor(ImGuiCol_ChildBg, palette().well);
   ImGui::BeginChild("ct-list", {0, std::max(pen.px(60), high - pen.px(20))}, false,
                     ImGuiWindowFlags_AlwaysUseWindowPadding);
@@ -69,7 +73,8 @@ void Panels::Drawing::ct_series(float high) {
   for (std::size_t i = 0; i < ct.series.size(); ++i) {
     const CtSeriesItem& one = ct.series[i];
     const bool best = static_cast<int>(i) == ct.best;
-    const std::string words = fmt::format("{}  {}{}", one.number, one.facts, best ? "  (best)" : "");
+    const std::string words =
+        fmt::format("{}  {}{}", one.number, one.facts, best ? "  (best)" : "");
     ImGui::BeginDisabled(!one.readable);
     if (select_row(fitted(theme.regular, words, ImGui::GetContentRegionAvail().x) + "##ct" +
                        std::to_string(one.number),
@@ -202,8 +207,7 @@ void Panels::Drawing::ct_making() {
 void Panels::Drawing::ct_progress() {
   if (input.progress.empty()) return;
   const float bar = pen.px(3), whole = ImGui::GetContentRegionAvail().x, button = pen.px(80);
-  text(panels.theme_.regular, palette().text,
-       fitted(panels.theme_.regular, input.progress, whole));
+  text(panels.theme_.regular, palette().text, fitted(panels.theme_.regular, input.progress, whole));
   pen.mark("ct-progress", input.progress);
   const ImVec2 at = ImGui::GetCursorScreenPos();
   ImDrawList& list = *ImGui::GetWindowDrawList();

@@ -71,7 +71,8 @@ void Panels::Drawing::ct_pictures(const ViewRect& place) {
   PanelFormState::CtFields& form = panels.form_.ct;
   const CtChoice before = form.choice;
   const double gap = std::max(1.0, std::round(double{pen.px(1)}));
-  const double wide = std::floor((place.width - gap) / 2), high = std::floor((place.height - gap) / 2);
+  const double wide = std::floor((place.width - gap) / 2),
+               high = std::floor((place.height - gap) / 2);
   for (std::size_t i = 0; i < 4; ++i) {
     const ViewRect pane = {place.x + static_cast<double>(i % 2) * (wide + gap),
                            place.y + static_cast<double>(i / 2) * (high + gap), wide, high};
@@ -99,7 +100,8 @@ void Panels::Drawing::ct_slice(std::size_t which, const ViewRect& pane) {
   if (input.ct_pictures[which] != 0)
     list.AddImage(reinterpret_cast<ImTextureID>(input.ct_pictures[which]), low, high);
   ImGui::SetCursorPos({0, 0});
-  ImGui::InvisibleButton("slice", {static_cast<float>(pane.width), static_cast<float>(pane.height)});
+  ImGui::InvisibleButton("slice",
+                         {static_cast<float>(pane.width), static_cast<float>(pane.height)});
   const ImGuiIO& io = ImGui::GetIO();
   const bool hovered = ImGui::IsItemHovered();
   const Vector3d across = slice.step.normalized();
@@ -134,8 +136,10 @@ void Panels::Drawing::ct_slice(std::size_t which, const ViewRect& pane) {
   list.AddText(panels.theme_.small, panels.theme_.small->FontSize,
                {static_cast<float>(pane.x) + pen.px(8), static_cast<float>(pane.y) + pen.px(6)},
                ct_letter, words.c_str());
-  pen.items.push_back({std::string(slice_items[which]) + ":slice", slice_items[which],
-                       {r.x, r.y, r.width, r.height}, words});
+  pen.items.push_back({std::string(slice_items[which]) + ":slice",
+                       slice_items[which],
+                       {r.x, r.y, r.width, r.height},
+                       words});
   end_panel();
   ImGui::PopStyleVar();
   ImGui::PopStyleColor();
@@ -154,14 +158,15 @@ void Panels::Drawing::ct_solid(const ViewRect& pane) {
                   {static_cast<float>(r.x), static_cast<float>(r.y)},
                   {static_cast<float>(r.x + r.width), static_cast<float>(r.y + r.height)});
   ImGui::SetCursorPos({0, 0});
-  ImGui::InvisibleButton("solid", {static_cast<float>(pane.width), static_cast<float>(pane.height)});
+  ImGui::InvisibleButton("solid",
+                         {static_cast<float>(pane.width), static_cast<float>(pane.height)});
   const ImGuiIO& io = ImGui::GetIO();
   if (ImGui::IsItemActive() && (io.MouseDelta.x != 0 || io.MouseDelta.y != 0)) {
     constexpr double degrees_across = 240;
     form.choice.turn_deg =
         std::remainder(form.choice.turn_deg - io.MouseDelta.x / r.width * degrees_across, 360);
-    form.choice.tilt_deg = std::clamp(
-        form.choice.tilt_deg + io.MouseDelta.y / r.height * degrees_across, -89.0, 89.0);
+    form.choice.tilt_deg =
+        std::clamp(form.choice.tilt_deg + io.MouseDelta.y / r.height * degrees_across, -89.0, 89.0);
   }
   list.AddText(panels.theme_.small, panels.theme_.small->FontSize,
                {static_cast<float>(pane.x) + pen.px(8), static_cast<float>(pane.y) + pen.px(6)},

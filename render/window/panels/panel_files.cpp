@@ -65,9 +65,10 @@ void list_folder(PanelFormState::OpenFields& fields) {
     std::string ending = it->path().extension().string();
     std::transform(ending.begin(), ending.end(), ending.begin(),
                    [](unsigned char c) { return std::tolower(c); });
-    for (const char* known : {".stl", ".ply", ".obj", ".glb", ".gltf", ".csv", ".motion", ".mot",
-                              ".sto", ".trc", ".raw", ".txt", ".json", ".condyle-session", ".nrrd", ".nhdr",
-                              ".mha", ".mhd", ".nii", ".gz", ".dcm"})
+    for (const char* known :
+         {".stl",  ".ply",  ".obj", ".glb", ".gltf", ".csv",  ".motion",
+          ".mot",  ".sto",  ".trc", ".raw", ".txt",  ".json", ".condyle-session",
+          ".nrrd", ".nhdr", ".mha", ".mhd", ".nii",  ".gz",   ".dcm"})
       if (ending == known && (ending != ".json" || name.ends_with(".mrk.json")) &&
           (ending != ".gz" || name.ends_with(".nii.gz")))
         fields.files.push_back(it->path());

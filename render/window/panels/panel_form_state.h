@@ -62,12 +62,12 @@ struct PanelFormState {
   } session;
   struct CtFields {
     enum class Click { cross, skull, jaw };
-    int opened = 0;       // the import that the fields belong to
-    CtChoice choice;      // as the user has changed it
-    CtChoice asked;       // that was requested last
-    int series = 0;       // chosen in the list
+    int opened = 0;              // the import that the fields belong to
+    CtChoice choice;             // as the user has changed it
+    CtChoice asked;              // that was requested last
+    int series = 0;              // chosen in the list
     Click click = Click::cross;  // what a click on a slice sets
-    std::string folder;   // of the patient
+    std::string folder;          // of the patient
   } ct;
   std::optional<Question> question;
   std::optional<request::Import> import;  // surfaces that wait for their roles

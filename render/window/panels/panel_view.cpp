@@ -79,8 +79,8 @@ void Panels::Drawing::view_signs() {
     line(theme.large, palette().text, "Condyle", centre.y - pen.px(110));
     line(theme.small, palette().text_dim, purpose, static_cast<float>(r.height) - pen.px(30));
     if (!input.progress.empty()) return;
-    line(theme.regular, palette().text_dim, "Open a patient, or drop its folder, surfaces or CT here",
-         centre.y - pen.px(50));
+    line(theme.regular, palette().text_dim,
+         "Open a patient, or drop its folder, surfaces or CT here", centre.y - pen.px(50));
     const float wide = pen.px(96), high = pen.px(32);
     ImGui::PushStyleColor(ImGuiCol_WindowBg, colour::rgb(0, 0));
     begin_panel(pen, "start",

@@ -425,9 +425,10 @@ void Panels::Drawing::top_bar() {
   const float open_width = width_of("Open");
   if (word_button(pen, "open-files", "Open", {open_width, side}, false))
     panels.run(Command::open_files, input.scene, view);
-  tooltip(pen,
-          "A session, a patient, a motion, surfaces or a CT; they can also be dropped on the window. "
-          "Ctrl+O");
+  tooltip(
+      pen,
+      "A session, a patient, a motion, surfaces or a CT; they can also be dropped on the window. "
+      "Ctrl+O");
   ImGui::SameLine(0, gap);
   const float save_width = width_of("Save");
   if (word_button(pen, "save-session", "Save", {save_width, side}, false))

@@ -135,10 +135,8 @@ Counted count_lines(const CtSliceView& view) {
   const CtPixels& picture = *view.picture;
   for (int y = 0; y < picture.height; ++y)
     for (int x = 0; x < picture.width; ++x) {
-      const std::uint8_t* p =
-          &picture.rgba[static_cast<std::size_t>(4 * (y * picture.width + x))];
-      const Vector3d at = view.corner +
-                          (x + 0.5) / picture.width * view.width_mm * view.right +
+      const std::uint8_t* p = &picture.rgba[static_cast<std::size_t>(4 * (y * picture.width + x))];
+      const Vector3d at = view.corner + (x + 0.5) / picture.width * view.width_mm * view.right +
                           (y + 0.5) / picture.height * view.height_mm * view.down;
       if (p[0] > 200 && p[2] < 110) {
         ++counted.yellow;
