@@ -56,7 +56,7 @@ class WindowSession : public testing::Test {
     const std::string file = state_file();
     return fs::exists(file) ? Json::parse(read_text(file)) : Json::object();
   }
-  bool wait_until(const std::function<bool(const Json&)>& law, double longest_s = 40) {
+  bool wait_until(const std::function<bool(const Json&)>& law, double longest_s = 120) {
     const auto start = std::chrono::steady_clock::now();
     while (std::chrono::steady_clock::now() - start < std::chrono::duration<double>(longest_s)) {
       const Json now = state();
@@ -118,6 +118,7 @@ class WindowSession : public testing::Test {
     EXPECT_TRUE(xdotool({"type", "--", words}));
     EXPECT_TRUE(press("Return"));
   }
+  Picture display_picture() const { return display_->picture(); }
   /// The screen once nothing changes any more.
   Picture settled_picture() {
     Picture last = display_->picture();
