@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "engine/core/parallel.h"
+#include "engine/core/units.h"
+#include "engine/volume/lines.h"
 
 namespace condyle {
 namespace {
@@ -14,11 +15,6 @@ using Eigen::Vector3d;
 constexpr double coarse_mm = 1.3;
 constexpr int block = 6;  // values along an edge
 constexpr std::int16_t around_hu = -1024;
-
-std::size_t count_of(const std::array<int, 3>& size) {
-  return static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]) *
-         static_cast<std::size_t>(size[2]);
-}
 
 /// Means of `times` values along each axis.
 Volume thinned(const Volume& volume, const std::array<int, 3>& times, int threads) {
@@ -30,7 +26,7 @@ Volume thinned(const Volume& volume, const std::array<int, 3>& times, int thread
     coarse.spacing_mm[axis] = volume.spacing_mm[axis] * times[a];
   }
   coarse.origin = volume.position(0.5 * (times[0] - 1), 0.5 * (times[1] - 1), 0.5 * (times[2] - 1));
-  coarse.values.resize(count_of(coarse.size));
+  coarse.values.resize(lattice_count(coarse.size));
   const int total = times[0] * times[1] * times[2];
   parallel_for(static_cast<std::size_t>(coarse.size[2]), threads, [&](std::size_t slice) {
     const int k = static_cast<int>(slice);
@@ -67,7 +63,7 @@ SolidScan::SolidScan(const Volume& volume, double threshold_hu, int threads,
 
 void SolidScan::find_blocks() {
   for (std::size_t a = 0; a < 3; ++a) block_count_[a] = (coarse_.size[a] + block - 1) / block;
-  highest_.assign(count_of(block_count_), around_hu);
+  highest_.assign(lattice_count(block_count_), around_hu);
   std::size_t n = 0;
   for (int c = 0; c < block_count_[2]; ++c)
     for (int b = 0; b < block_count_[1]; ++b)
@@ -182,7 +178,6 @@ bool SolidScan::hits(const Vector3d& from, const Vector3d& direction, double thr
 
 CtPixels SolidScan::picture(int side_pixels, double threshold_hu, double turn_deg, double tilt_deg,
                             int threads) const {
-  constexpr double degree = std::numbers::pi / 180;
   const double t = turn_deg * degree, e = tilt_deg * degree;
   const Vector3d toward(std::sin(t) * std::cos(e), -std::cos(t) * std::cos(e), std::sin(e));
   const Vector3d right(std::cos(t), std::sin(t), 0), up = toward.cross(right);

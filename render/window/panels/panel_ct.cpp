@@ -138,9 +138,9 @@ void Panels::Drawing::ct_seeds() {
   auto& seeds = form.choice.seeds;
   heading(pen, "Seeds", seeds.empty() ? "" : fmt::format("{}", seeds.size()));
   wrapped(panels.theme_.small, palette().text_dim,
-          form.click == Click::cross
-              ? "Where the jaws might not be told apart, mark bone of each with a few clicks."
-              : "Click on bone in a slice.");
+          form.click == Click::cross ? "Where the teeth touch, a few clicks on bone of each help "
+                                       "to separate skull and lower jaw."
+                                     : "Click on bone in a slice.");
   const std::string& remark = input.scene.ct->seed_remark;
   if (!remark.empty()) {
     wrapped(panels.theme_.small, palette().warning, remark);
