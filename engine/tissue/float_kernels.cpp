@@ -53,6 +53,7 @@ CONDYLE_INLINE void totals(const Vector (&sum)[N][tile_vectors], float* to) {
 #pragma GCC target("avx2,fma")
 #ifdef __clang__
 #pragma clang attribute push(__attribute__((target("avx2,fma"))), apply_to = function)
+#pragma clang fp contract(fast)
 #endif
 namespace avx2 {
 constexpr int W = 8, tile_vectors = tile_rows / W;
@@ -114,6 +115,7 @@ CONDYLE_INLINE void totals(const Vector (&sum)[N][1], float* to) {
 #pragma GCC pop_options
 #ifdef __clang__
 #pragma clang attribute pop
+#pragma clang fp contract(off)
 #endif
 #endif
 
