@@ -14,13 +14,15 @@ using Eigen::Vector3d;
 constexpr double reach_mm = 9, least_depth_mm = 0.5, about_as_deep_mm = 0.7;
 constexpr double shifted_mm = 2.5, doubtful_mm = 8;
 constexpr double widest_mm = 35, side_step_mm = 1, climb_mm = 1.5;
+constexpr double alone_mm = 2;       // a hollow is the deepest one within this height
+constexpr double ends_early_mm = 6;  // of the line before a carried corner
 
 struct Hollow {
   double y = 0, z = 0;
 };
 
 /// The hollow of a profile that is nearest to a height, of those about as deep as the deepest
-/// within `reach`.
+/// within `reach`. Each is the deepest of its surroundings: the side of a hollow is none.
 std::optional<Hollow> hollow_near(const FrontProfile& front, double height, double reach) {
   std::map<int, double> depths;
   double most = 0;
@@ -34,7 +36,11 @@ std::optional<Hollow> hollow_near(const FrontProfile& front, double height, doub
   std::optional<Hollow> best;
   for (const auto& [bin, depth] : depths) {
     const double z = profile_height(bin);
-    if (depth < most - about_as_deep_mm) continue;
+    if (depth < std::max(most - about_as_deep_mm, least_depth_mm)) continue;
+    const auto deeper = std::find_if(depths.begin(), depths.end(), [&](const auto& other) {
+      return std::abs(profile_height(other.first) - z) <= alone_mm && other.second > depth;
+    });
+    if (deeper != depths.end()) continue;
     if (!best || std::abs(z - height) < std::abs(best->z - height)) best = Hollow{front.at(bin), z};
   }
   return best;
@@ -58,8 +64,8 @@ class MouthLine {
     return Vector3d(x0_, median.y, median.z);
   }
 
-  /// Follows the line from its middle to a side, up to x; ends earlier where the hollow does.
-  Vector3d corner(const Vector3d& middle, double x) const {
+  /// Follows the line from its middle to a side, up to x. Nothing where it ends much earlier.
+  std::optional<Vector3d> corner(const Vector3d& middle, double x) const {
     const double sign = x > middle.x() ? 1 : -1;
     const double width = std::min(std::abs(x - middle.x()), widest_mm);
     Vector3d at = middle;
@@ -68,6 +74,7 @@ class MouthLine {
       const auto hollow = hollow_near(front_profile(skin_, next), at.z(), climb_mm);
       if (hollow) at = {next, hollow->y, hollow->z};
     }
+    if (std::abs(at.x() - x) > ends_early_mm) return std::nullopt;
     return at;
   }
 
@@ -131,8 +138,14 @@ void find_mouth_line(std::map<std::string, ProposedLandmark>& marks, const TriMe
     mark->point = axes * p;
   };
   for (const char* name : {"left_cheilion", "right_cheilion"})
-    if (const ProposedLandmark* corner = find(name))
-      place(name, line.corner(*middle, in_head(corner->point).x()));
+    if (ProposedLandmark* mark = find(name)) {
+      const Vector3d at = in_head(mark->point);
+      const auto corner = line.corner(*middle, at.x());
+      place(name, corner.value_or(at + Vector3d(0, 0, shift)));
+      if (corner) continue;
+      mark->doubtful = true;
+      mark->reason = "the line between the lips was not found up to the corner";
+    }
   constexpr double nearest_mm = 1, farthest_mm = 9;  // of a lip's foremost point from the line
   place("labrale_superius", line.foremost(middle->z() + nearest_mm, middle->z() + farthest_mm));
   place("labrale_inferius", line.foremost(middle->z() - farthest_mm, middle->z() - nearest_mm));
