@@ -14,7 +14,8 @@ constexpr int metal_hu = 2900;  // enamel is darker
 constexpr int least_saturated_hu = 2000, saturation_slack_hu = 30;
 constexpr double least_metal_mm2 = 4, longest_slab_mm = 40, beyond_mm = 1;
 constexpr double beside_bone_mm = 4, beside_head_mm = 3, spike_mm = 5, within_head_mm = 4;
-constexpr float streak_reach_mm = 50;
+constexpr float streak_reach_mm = 50, farthest_beside_mm = 10;
+constexpr double faint_from_mm = 1, rise_hu_per_mm = 200;  // of the least bone beside bone
 constexpr double fading_mm = 10, outline_blur_mm = 2;
 constexpr std::int16_t streak_air_hu = -1000;
 
@@ -161,18 +162,34 @@ void drop_streaks(const Volume& volume, const MetalSlab& slab, BoneVoxels& bone,
     const auto at = lattice.place(pixel, slice);
     return bone.label[bone.box.index(at[0], at[1], at[2])];
   };
-  const std::vector<float> beside = flat_distances(lattice, [&](std::size_t p) {
-    return (before >= 0 && is_bone(label(p, before))) ||
-           (after < slices && is_bone(label(p, after)));
-  });
+  // Distances from the bone of the slices beside the slab, negative inside.
+  const auto from_bone = [&](int slice) {
+    std::vector<float> distance =
+        flat_distances(lattice, [&](std::size_t p) { return is_bone(label(p, slice)); });
+    const std::vector<float> depth =
+        flat_distances(lattice, [&](std::size_t p) { return !is_bone(label(p, slice)); });
+    for (std::size_t p = 0; p < distance.size(); ++p)
+      distance[p] = std::clamp(std::sqrt(distance[p]) - std::sqrt(depth[p]), -farthest_beside_mm,
+                               farthest_beside_mm);
+    return distance;
+  };
+  if (before < 0 && after >= slices) return;
+  const std::vector<float> below = from_bone(before < 0 ? after : before),
+                           above = from_bone(after >= slices ? before : after);
   const Eigen::Vector3d origin = bone.box.position(volume, 0, 0, 0);
   const std::vector<float> from_metal = metal_distances(lattice, slab, volume, origin);
   const int first = std::max(before + 1, 0), last = std::min(after, slices);
   parallel_for(static_cast<std::size_t>(std::max(0, last - first)), threads, [&](std::size_t s) {
-    for (std::size_t p = 0; p < beside.size(); ++p) {
-      VoxelLabel& here = label(p, first + static_cast<int>(s));
-      if (is_bone(here) && beside[p] > square(beside_bone_mm) &&
-          from_metal[p] < square(streak_reach_mm))
+    const int slice = first + static_cast<int>(s);
+    const double share = static_cast<double>(slice - before) / (after - before);
+    for (std::size_t p = 0; p < lattice.pixels(); ++p) {
+      VoxelLabel& here = label(p, slice);
+      if (!is_bone(here) || from_metal[p] >= square(streak_reach_mm)) continue;
+      const double away_mm = (1 - share) * below[p] + share * above[p];
+      const auto at = lattice.place(p, slice);
+      const double least_hu =
+          bone.threshold_hu + rise_hu_per_mm * std::max(0.0, away_mm - faint_from_mm);
+      if (away_mm > beside_bone_mm || bone.smooth[bone.box.index(at[0], at[1], at[2])] < least_hu)
         here = other_bone;
     }
   });

@@ -11,8 +11,10 @@ namespace condyle {
 /// more than 40 mm.
 std::optional<MetalSlab> find_metal(const Volume& volume, const BoneVoxels& bone);
 
-/// Gives what is bright in the slab, not farther than 50 mm from the metal, and farther than 4 mm
-/// from the bone above and below it, seen along the axis, the label of what is no bone.
+/// Gives what is bright in the slab, not farther than 50 mm from the metal, the label of what is no
+/// bone where it is farther than 4 mm from bone that is interpolated between the slices above and
+/// below the slab, and nearer than that where it is faint: the least value of bone rises with the
+/// distance.
 void drop_streaks(const Volume& volume, const MetalSlab& slab, BoneVoxels& bone, int threads);
 
 /// Repairs the outline of the head in the slab where it is farther than 3 mm outside or 4 mm inside
