@@ -43,8 +43,8 @@ std::vector<Column> make_columns(CoarseSkin& skin, const Bones& bones, const Ana
                                  const ColumnSettings& settings, const Landmarks& landmarks,
                                  const TissuePlan& plan, const std::vector<signed char>& side,
                                  std::vector<std::string>& notes) {
-  // rounds of smoothing before triangles are unfolded
-  constexpr int before_ears = 20, max_rounds = 25;
+  // rounds of smoothing before more of the surroundings moves, and before triangles are unfolded
+  constexpr int before_widening = 12, before_ears = 20, max_rounds = 40;
   std::vector<Column> columns;
   ShapedColumns shaped;
   int rounds = 0;
@@ -55,7 +55,7 @@ std::vector<Column> make_columns(CoarseSkin& skin, const Bones& bones, const Ana
     shaped = shape_columns(skin, settings, columns);
     if (shaped.sound() || rounds == max_rounds) break;
     if (rounds >= before_ears) unfold_ears(skin, shaped.folded);
-    relax_folds(skin, shaped.folded);
+    relax_folds(skin, shaped.folded, 1 + std::max(0, rounds - before_widening) / 4);
   }
   if (shaped.thinned > 0)
     notes.push_back(std::to_string(shaped.thinned) + " of " + std::to_string(columns.size()) +

@@ -202,16 +202,20 @@ ShapedColumns shape_columns(const CoarseSkin& skin, const ColumnSettings& settin
   return shaped;
 }
 
-void relax_folds(CoarseSkin& skin, const std::vector<char>& folded) {
+void relax_folds(CoarseSkin& skin, const std::vector<char>& folded, int rings) {
   const auto ring = rings_of(skin.mesh);
-  std::vector<char> moves(folded.size(), 0);
-  for (std::size_t v = 0; v < folded.size(); ++v) {
-    if (!folded[v]) continue;
-    moves[v] = 1;
-    for (int n : ring[v]) moves[n] = 1;
+  std::vector<char> moves = folded;
+  for (int grown = 0; grown < rings; ++grown) {
+    const std::vector<char> inner = moves;
+    for (std::size_t v = 0; v < inner.size(); ++v)
+      if (inner[v])
+        for (int n : ring[v]) moves[n] = 1;
   }
-  for (const auto& loop : border_loops(skin.mesh))
-    for (int v : loop) moves[v] = 0;
+  constexpr int borders_stay = 3;  // rings; a sharp bend of a border may move after that
+  for (const auto& loop : border_loops(skin.mesh)) {
+    const bool is_mouth = std::find(loop.begin(), loop.end(), skin.mouth.left_corner) != loop.end();
+    for (int v : loop) moves[v] = rings > borders_stay && !is_mouth && folded[v];
+  }
   for (int round = 0; round < 3; ++round) {
     const auto before = skin.mesh.vertices;
     for (std::size_t v = 0; v < moves.size(); ++v) {
