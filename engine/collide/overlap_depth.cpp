@@ -166,7 +166,7 @@ class DepthSearch {
     if (middle.depth >= -reach_rounding_mm) return false;
     const Eigen::Vector3d low = t[0].cwiseMin(t[1]).cwiseMin(t[2]).array() - reach_rounding_mm,
                           high = t[0].cwiseMax(t[1]).cwiseMax(t[2]).array() + reach_rounding_mm;
-    return !shell(into).tree.any_near(low, high, [&](const Triangle& other) {
+    return !shell(into).tree.any_near(low, high, [&](const Triangle& other, int) {
       const Eigen::Vector3d low_other = other[0].cwiseMin(other[1]).cwiseMin(other[2]),
                             high_other = other[0].cwiseMax(other[1]).cwiseMax(other[2]);
       return (low_other.array() <= high.array()).all() &&

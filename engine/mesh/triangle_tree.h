@@ -57,7 +57,7 @@ class TriangleTree {
   /// Outward normal (unit) of the face, edge or corner on which a found point lies.
   Eigen::Vector3d pseudonormal(const SurfacePoint& found) const;
 
-  /// Whether `holds(corners)` of any triangle that may meet the box.
+  /// Whether `holds(corners, triangle)` of any triangle that may meet the box.
   template <class Test>
   bool any_near(const Eigen::Vector3d& low, const Eigen::Vector3d& high, const Test& holds) const {
     if (empty()) return false;
@@ -75,7 +75,8 @@ class TriangleTree {
         continue;
       }
       for (int i = node.first; i < node.first + node.count; ++i)
-        if (holds(corners_[static_cast<std::size_t>(i)])) return true;
+        if (const auto at = static_cast<std::size_t>(i); holds(corners_[at], triangle_[at]))
+          return true;
     }
     return false;
   }

@@ -3,9 +3,13 @@
 #include <limits>
 
 #include "engine/core/parallel.h"
+#include "engine/mesh/measure.h"
+#include "engine/mesh/self_crossings.h"
 #include "engine/mesh/unfold.h"
 #include "engine/segmentation/half_way.h"
+#include "engine/segmentation/head_labels.h"
 #include "engine/segmentation/lattice_surface.h"
+#include "engine/segmentation/volume_values.h"
 #include "engine/volume/blur.h"
 
 namespace condyle {
@@ -79,27 +83,48 @@ std::vector<float> bone_values(const BoneVoxels& bone, VoxelLabel label, const V
   return values;
 }
 
-/// Vertices that have moved into, or beside, voxels of the other bone return to where they were:
-/// surfaces of bones that touch do not pass through each other.
-void return_from_other_bone(const Volume& volume, const BoneVoxels& bone, VoxelLabel label,
-                            const std::vector<Eigen::Vector3d>& before, int threads,
-                            TriMesh& mesh) {
-  const auto is_other = [&](int i, int j, int k) {
+/// Whether a gap parts two bones in life: the bone of one jaw and bone or teeth of the other.
+bool live_apart(VoxelLabel bone, VoxelLabel other) {
+  return (bone == skull_label && (other == mandible_label || other == lower_teeth_label)) ||
+         (bone == mandible_label && (other == skull_label || other == upper_teeth_label));
+}
+
+/// Places vertices that have moved into, or beside, voxels of another bone, so that surfaces do not
+/// pass through each other. Those that have moved inward from a darker gap between the bones, as
+/// in a joint, stay. Others return to where they were; where the bones live apart, half a voxel
+/// inside that.
+void part_from_other_bones(const Volume& volume, const BoneVoxels& bone, VoxelLabel label,
+                           const TriMesh& before, int threads, TriMesh& mesh) {
+  constexpr double gap_hu = 150, inside_voxels = 2, least_gap_voxels = 1;
+  const auto other_at = [&](int i, int j, int k) {
     const std::array<int, 3> at = {i - bone.box.low[0], j - bone.box.low[1], k - bone.box.low[2]};
     for (std::size_t a = 0; a < 3; ++a)
-      if (at[a] < 0 || at[a] >= bone.box.size[a]) return false;
+      if (at[a] < 0 || at[a] >= bone.box.size[a]) return no_bone;
     const VoxelLabel here = bone.label[bone.box.index(at[0], at[1], at[2])];
-    return here != label && here != no_bone;
+    return here == label ? no_bone : here;
   };
-  parallel_for(before.size(), threads, [&](std::size_t v) {
+  const VolumeValues values(volume);
+  const std::vector<Eigen::Vector3d> normals = vertex_normals(before);
+  const auto left_a_gap = [&](std::size_t v) {
+    const Eigen::Vector3d &from = before.vertices[v], &n = normals[v];
+    if ((mesh.vertices[v] - from).dot(n) >= 0) return false;
+    return values(from) < values(from - inside_voxels * values.step_mm(n) * n) - gap_hu;
+  };
+  parallel_for(before.vertices.size(), threads, [&](std::size_t v) {
     const Eigen::Vector3d q = (volume.axes.transpose() * (mesh.vertices[v] - volume.origin))
                                   .cwiseQuotient(volume.spacing_mm);
     const Eigen::Vector3i low = q.array().floor().cast<int>();
-    for (int corner = 0; corner < 8; ++corner)
-      if (is_other(low.x() + (corner & 1), low.y() + (corner >> 1 & 1), low.z() + (corner >> 2))) {
-        mesh.vertices[v] = before[v];
-        return;
-      }
+    bool beside = false, apart = false;
+    for (int corner = 0; corner < 8; ++corner) {
+      const VoxelLabel other =
+          other_at(low.x() + (corner & 1), low.y() + (corner >> 1 & 1), low.z() + (corner >> 2));
+      beside = beside || other != no_bone;
+      apart = apart || (other != no_bone && live_apart(label, other));
+    }
+    if (!beside || left_a_gap(v)) return;
+    mesh.vertices[v] = before.vertices[v];
+    const Eigen::Vector3d& n = normals[v];
+    if (apart) mesh.vertices[v] -= 0.5 * least_gap_voxels * values.step_mm(n) * n;
   });
 }
 
@@ -116,13 +141,19 @@ ScanSurface bone_surface(const Volume& volume, const BoneVoxels& bone, VoxelLabe
   surface.mesh = lattice_surface(volume, in_volume, bone_values(bone, label, part, options.threads),
                                  options.least_piece_mm3);
   report(progress, "finding the surface", 1);
-  const std::vector<Eigen::Vector3d> before = surface.mesh.vertices;
+  const TriMesh before = surface.mesh;
   surface.moved_fraction =
       move_to_half_way(surface.mesh, volume,
                        {.threshold_hu = bone.threshold_hu, .threads = options.threads}, progress);
-  return_from_other_bone(volume, bone, label, before, options.threads, surface.mesh);
-  unfold(surface.mesh, {.most_mm = 0.5 * volume.spacing_mm.minCoeff()});
-  decimate_surface(surface, options, progress);
+  part_from_other_bones(volume, bone, label, before, options.threads, surface.mesh);
+  const UnfoldSettings flat{.most_mm = 0.5 * volume.spacing_mm.minCoeff()};
+  unfold(surface.mesh, flat);
+  uncross(surface.mesh, before.vertices, options.threads);
+  // What went back may be folded again.
+  const std::vector<Eigen::Vector3d> folded = surface.mesh.vertices;
+  unfold(surface.mesh, flat);
+  uncross(surface.mesh, folded, options.threads);
+  decimate_surface(surface, Flaws::crossings, options, progress);
   return surface;
 }
 

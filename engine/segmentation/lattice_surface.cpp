@@ -9,6 +9,7 @@
 #include "engine/mesh/measure.h"
 #include "engine/mesh/pieces.h"
 #include "engine/mesh/repair.h"
+#include "engine/mesh/self_crossings.h"
 #include "engine/mesh/simplify.h"
 #include "engine/mesh/topology.h"
 #include "engine/mesh/triangle_tree.h"
@@ -58,14 +59,15 @@ void mark_around(const TriMesh& mesh, const std::vector<int>& vertices, int ring
   }
 }
 
-/// About so many triangles, closed: where collapsed edges would open the surface, its triangles
-/// stay as they are. Empty when that does not succeed.
-TriMesh decimated_closed(const TriMesh& mesh, int target) {
+/// About so many triangles, closed: where collapsed edges would open the surface, or let it pass
+/// through itself, its triangles stay as they are. Empty when that does not succeed.
+TriMesh decimated_closed(const TriMesh& mesh, int target, int threads) {
   constexpr int rounds = 6;
   const Vector3d middle = bounding_box(mesh).center();
   std::vector<Eigen::Vector3f> positions;
   for (const Vector3d& p : mesh.vertices) positions.push_back((p - middle).cast<float>());
   std::vector<char> kept(mesh.triangles.size(), 0);
+  const bool crosses = !self_crossings(mesh, threads).empty();
   for (int round = 0; round < rounds; ++round) {
     std::vector<Vector3i> free, result;
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
@@ -76,12 +78,15 @@ TriMesh decimated_closed(const TriMesh& mesh, int target) {
     result.insert(result.end(), coarse.begin(), coarse.end());
     drop_flaps(result);
     TriMesh decimated{mesh.vertices, std::move(result), {}};
-    const std::vector<int> open = open_vertices(decimated);
-    if (open.empty()) {
+    std::vector<int> wrong = open_vertices(decimated);
+    if (!crosses)
+      for (const int t : self_crossings(decimated, threads))
+        for (const int v : decimated.triangles[static_cast<std::size_t>(t)]) wrong.push_back(v);
+    if (wrong.empty()) {
       drop_unreferenced(decimated);
       return decimated;
     }
-    mark_around(mesh, open, 3 + round, kept);
+    mark_around(mesh, wrong, 3 + round, kept);
   }
   return {};
 }
@@ -101,16 +106,18 @@ TriMesh lattice_surface(const Volume& volume, const VoxelBox& box, std::vector<f
   return mesh;
 }
 
-void decimate_surface(ScanSurface& surface, const SurfaceOptions& options,
+void decimate_surface(ScanSurface& surface, Flaws worse, const SurfaceOptions& options,
                       const Progress& progress) {
   surface.found_triangles = surface.mesh.triangles.size();
   if (options.target_triangles <= 0 || surface.mesh.triangles.empty()) return;
   report(progress, "decimating", 0);
   TriMesh coarse;
   if (static_cast<int>(surface.mesh.triangles.size()) > options.target_triangles)
-    coarse = decimated_closed(surface.mesh, options.target_triangles);
+    coarse = decimated_closed(surface.mesh, options.target_triangles, options.threads);
   if (coarse.empty()) coarse = simplify(surface.mesh, options.target_triangles);
+  const std::vector<Vector3d> folded = coarse.vertices;
   unfold(coarse);
+  if (worse == Flaws::crossings) uncross(coarse, folded, options.threads);
   report(progress, "decimating", 0.8);
   const TriangleTree tree(coarse);
   constexpr std::size_t every = 7;

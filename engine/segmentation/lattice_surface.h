@@ -13,8 +13,12 @@ namespace condyle {
 TriMesh lattice_surface(const Volume& volume, const VoxelBox& box, std::vector<float> values,
                         double least_mm3);
 
-/// Decimates the surface and measures the error.
-void decimate_surface(ScanSurface& surface, const SurfaceOptions& options,
+/// What no decimated surface may have: triangles that pass through others, where the surface would
+/// be inside out, or ones that are folded onto their neighbours, as far as either is possible.
+enum class Flaws { crossings, folds };
+
+/// Decimates the surface, without the worse flaws for its use, and measures the error.
+void decimate_surface(ScanSurface& surface, Flaws worse, const SurfaceOptions& options,
                       const Progress& progress);
 
 }  // namespace condyle

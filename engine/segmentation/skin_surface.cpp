@@ -7,6 +7,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/parallel.h"
+#include "engine/mesh/self_crossings.h"
 #include "engine/mesh/unfold.h"
 #include "engine/segmentation/half_way.h"
 #include "engine/segmentation/lattice_surface.h"
@@ -124,12 +125,14 @@ ScanSurface skin_surface(const Volume& volume, const TissueLevels& levels, const
   surface.mesh = lattice_surface(lattice, whole_box(lattice), std::move(values),
                                  std::max(options.least_piece_mm3, least_skin_mm3));
   report(progress, "finding the skin", 1);
+  const std::vector<Eigen::Vector3d> before = surface.mesh.vertices;
   surface.moved_fraction = move_to_half_way(
       surface.mesh, solid,
       {.threshold_hu = levels.skin(), .rise_hu = 300, .drop_hu = 200, .threads = options.threads},
       progress);
+  uncross(surface.mesh, before, options.threads);
   unfold(surface.mesh, {.most_mm = 0.5 * volume.spacing_mm.minCoeff()});
-  decimate_surface(surface, options, progress);
+  decimate_surface(surface, Flaws::folds, options, progress);
   return surface;
 }
 

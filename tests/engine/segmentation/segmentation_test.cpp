@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "engine/core/error.h"
+#include "engine/mesh/self_crossings.h"
 #include "engine/mesh/topology.h"
 #include "engine/mesh/triangle_tree.h"
 #include "engine/mesh/unfold.h"
@@ -151,6 +152,34 @@ TEST(Segmentation, BonesThatTouchDoNotPassThroughEachOther) {
   }
   EXPECT_GT(near, 100u);
   EXPECT_EQ(deep, 0u) << "of " << near;
+}
+
+TEST(Segmentation, AJointOpensWhereThickVoxelsShowNoGap) {
+  // The discs of the built-in joints are 2.5 mm thick.
+  for (const double voxel_mm : {1.5, 2.0}) {
+    CtSettings settings = jaw_scan_settings();
+    settings.spacing_mm = Vector3d::Constant(voxel_mm);
+    const CtScan scan = scan_ct(ScannedHead(), settings);
+    const Segmented segments(scan.volume);
+    const auto surface = [&](VoxelLabel label) {
+      return bone_surface(scan.volume, segments.bone, label,
+                          {.target_triangles = 20000, .threads = threads})
+          .mesh;
+    };
+    const TriMesh skull = surface(skull_label), mandible = surface(mandible_label);
+    EXPECT_TRUE(self_crossings(skull, threads).empty());
+    EXPECT_TRUE(self_crossings(mandible, threads).empty());
+    const TriangleTree tree(skull);
+    double least = 10;
+    std::size_t near = 0;
+    for (const auto& p : mandible.vertices) {
+      if (p.y() < -25 || p.z() < -12) continue;
+      ++near;
+      least = std::min(least, tree.signed_distance(p));
+    }
+    EXPECT_GT(near, 100u);
+    EXPECT_GT(least, 0.4) << voxel_mm;
+  }
 }
 
 TEST(Segmentation, FindsTheSkin) {

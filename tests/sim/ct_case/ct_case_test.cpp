@@ -9,6 +9,7 @@
 
 #include "engine/core/error.h"
 #include "engine/mesh/topology.h"
+#include "engine/mesh/triangle_tree.h"
 #include "sim/phantom/phantom.h"
 #include "sim/scanner/ct_scan.h"
 
@@ -91,6 +92,24 @@ TEST(CtCase, ProposesTheLandmarks) {
   ASSERT_GT(errors.size(), 60u);
   EXPECT_LT(quantile(errors, 0.5), 1.5);
   EXPECT_LT(quantile(errors, 0.9), 5);
+}
+
+TEST(CtCase, ThickVoxelsKeepTheMouthAndTheBite) {
+  CtSettings settings;
+  settings.spacing_mm = Vector3d::Constant(1.5);
+  settings.noise_hu = 40;
+  settings.threads = 2;
+  const CtCase made =
+      case_of_ct(scan_ct(ScannedHead(), settings).volume, builtin_patient(), {.name = "scan"});
+  const Case truth = builtin_patient();
+  for (const char* name : {"stomion", "left_cheilion", "right_cheilion"})
+    EXPECT_LT((made.fit.landmarks.at(name).point - *truth.landmarks.find(name)).norm(), 2) << name;
+  // Crowns that touch in the scan are not inside each other.
+  const TriangleTree upper(made.patient.find(Role::upper_teeth)->mesh);
+  double deepest = 0;
+  for (const Vector3d& v : made.patient.find(Role::lower_teeth)->mesh.vertices)
+    deepest = std::min(deepest, upper.signed_distance(v));
+  EXPECT_GT(deepest, -0.3);
 }
 
 TEST(CtCase, SeedsMustLieInBone) {
