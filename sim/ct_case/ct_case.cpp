@@ -11,6 +11,7 @@
 #include "sim/case/soft_landmarks.h"
 #include "sim/case/tooth_labels.h"
 #include "sim/ct_case/tooth_voxels.h"
+#include "sim/motion/joint_surfaces.h"
 
 namespace condyle {
 namespace {
@@ -74,6 +75,7 @@ class CtSegmentation {
     made_.threshold_hu = bone_.threshold_hu;
     for (const std::string& note : made_.fit.notes) patient().notes.push_back(note);
     turn_to_lps();
+    add_disc();
     patient().name = request_.name;
     estimate_landmarks(patient());
     estimate_profile_landmarks(patient());
@@ -219,6 +221,20 @@ class CtSegmentation {
       for (auto& p : canal.points) p = R * p;
     patient().notes.push_back(
         "the scan was turned to LPS: its face looked elsewhere than its axes say");
+  }
+
+  /// Joints whose bones are nearer to each other than the voxels can show have a disc all the same.
+  void add_disc() {
+    constexpr double least_disc_mm = 1;
+    const auto joints = JointSurfaces::find(patient());
+    if (!joints) return;
+    const double gap_mm = joints->rest_gap_mm();
+    if (gap_mm >= std::min(least_disc_mm, volume_.spacing_mm.maxCoeff())) return;
+    patient().motion.disc_gap_front_mm = least_disc_mm;
+    patient().notes.push_back(
+        fmt::format("the scan shows a gap of {:.1f} mm in the joints, less than a voxel: the disc "
+                    "is assumed to be {:.0f} mm thick on the eminence",
+                    gap_mm, least_disc_mm));
   }
 
   const Volume& volume_;

@@ -17,7 +17,6 @@ using Eigen::Vector3d;
 
 constexpr double default_bennett_deg = 7.5, default_side_shift_mm = 0.3;
 constexpr double known_joint_front_gap_mm = 1.3;
-constexpr double least_front_gap_mm = 1;  // scans of thick slices show narrower gaps than there are
 constexpr double side_shift_length_mm = 1;
 
 Vector3d needed(const Case& patient, const char* name) {
@@ -88,7 +87,7 @@ JawJoints::JawJoints(const Case& patient, const MotionParameters& parameters, Jo
       DiscGap gap{parameters.disc_gap_mm.value_or(rest), 0};
       gap.front_mm = parameters.disc_gap_front_mm.value_or(
           patient.condylar_path ? std::min(gap.seated_mm, known_joint_front_gap_mm)
-                                : std::max(gap.seated_mm, least_front_gap_mm));
+                                : gap.seated_mm);
       const double widest =
           reach == JointReach::aside ? 0.5 + side_shift_mm_ + 14 * bennett_slope_ : 0;
       joint.table.emplace(*surfaces_, which,

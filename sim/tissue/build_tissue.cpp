@@ -43,8 +43,10 @@ std::vector<Column> make_columns(CoarseSkin& skin, const Bones& bones, const Ana
                                  const ColumnSettings& settings, const Landmarks& landmarks,
                                  const TissuePlan& plan, const std::vector<signed char>& side,
                                  std::vector<std::string>& notes) {
-  // rounds of smoothing before more of the surroundings moves, and before triangles are unfolded
+  // rounds of smoothing before more of the surroundings of a few folds moves, and before triangles
+  // are unfolded
   constexpr int before_widening = 12, before_ears = 20, max_rounds = 40;
+  constexpr std::size_t few = 50;  // one of so many columns
   std::vector<Column> columns;
   ShapedColumns shaped;
   int rounds = 0;
@@ -55,7 +57,9 @@ std::vector<Column> make_columns(CoarseSkin& skin, const Bones& bones, const Ana
     shaped = shape_columns(skin, settings, columns);
     if (shaped.sound() || rounds == max_rounds) break;
     if (rounds >= before_ears) unfold_ears(skin, shaped.folded);
-    relax_folds(skin, shaped.folded, 1 + std::max(0, rounds - before_widening) / 4);
+    const auto folded = std::count(shaped.folded.begin(), shaped.folded.end(), 1);
+    const bool local = static_cast<std::size_t>(folded) * few <= columns.size();
+    relax_folds(skin, shaped.folded, 1 + (local ? std::max(0, rounds - before_widening) / 4 : 0));
   }
   if (shaped.thinned > 0)
     notes.push_back(std::to_string(shaped.thinned) + " of " + std::to_string(columns.size()) +
