@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <regex>
 
 #include "engine/dicom/write_ct_series.h"
 #include "engine/volume/volume_files.h"
 #include "tests/support/program.h"
+#include "tests/support/real_cases.h"
 
 namespace condyle::test {
 namespace {
@@ -83,8 +85,7 @@ TEST(ImportCt, BadInputIsRefusedInOneLine) {
   write_ct_series(scanned_block(), folder.path() / "scan");
   const std::string scan = folder / "scan", out = folder / "volume.nrrd";
   expect_one_line(condyle({"import", "ct", scan}), "needs --out FOLDER");
-  expect_one_line(condyle({"import", "ct", scan, "--out", folder / "case"}),
-                  scan + ": ");
+  expect_one_line(condyle({"import", "ct", scan, "--out", folder / "case"}), scan + ": ");
   expect_one_line(condyle({"import", "ct", scan, "--volume-out", folder / "a.txt"}), ".nrrd");
   expect_one_line(condyle({"import", "ct", folder / "absent", "--volume-out", out}),
                   "no such file");
@@ -101,6 +102,21 @@ TEST(ImportCt, BadInputIsRefusedInOneLine) {
                   "holds no DICOM image");
   EXPECT_FALSE(fs::exists(out));
   EXPECT_FALSE(fs::exists(folder.path() / "case"));
+}
+
+TEST(ImportCt, ARealHeadWithFillingsOpensItsMouth) {
+  const fs::path scan = real_data() / "ct-head" / "head_ct.nrrd";
+  if (!fs::exists(scan)) GTEST_SKIP() << "real anatomy absent";
+  const Folder folder;
+  const std::string patient = folder / "head";
+  const auto made = condyle({"import", "ct", scan.string(), "--out", patient});
+  ASSERT_EQ(made.code, 0) << made.err;
+  const auto checked = condyle({"check", patient, "--motion", "open"});
+  ASSERT_EQ(checked.code, 0) << checked.err;  // bones never overlap
+  std::smatch opening;
+  ASSERT_TRUE(std::regex_search(checked.err, opening, std::regex("maximum opening ([0-9.]+) mm")))
+      << checked.err;
+  EXPECT_GT(std::stod(opening[1]), 40);
 }
 
 }  // namespace
