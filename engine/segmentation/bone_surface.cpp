@@ -95,7 +95,7 @@ bool live_apart(VoxelLabel bone, VoxelLabel other) {
 /// inside that.
 void part_from_other_bones(const Volume& volume, const BoneVoxels& bone, VoxelLabel label,
                            const TriMesh& before, int threads, TriMesh& mesh) {
-  constexpr double gap_hu = 150, inside_voxels = 2, least_gap_voxels = 1;
+  constexpr double gap_hu = 150, least_gap_voxels = 1;
   const auto other_at = [&](int i, int j, int k) {
     const std::array<int, 3> at = {i - bone.box.low[0], j - bone.box.low[1], k - bone.box.low[2]};
     for (std::size_t a = 0; a < 3; ++a)
@@ -105,10 +105,12 @@ void part_from_other_bones(const Volume& volume, const BoneVoxels& bone, VoxelLa
   };
   const VolumeValues values(volume);
   const std::vector<Eigen::Vector3d> normals = vertex_normals(before);
-  const auto left_a_gap = [&](std::size_t v) {
-    const Eigen::Vector3d &from = before.vertices[v], &n = normals[v];
-    if ((mesh.vertices[v] - from).dot(n) >= 0) return false;
-    return values(from) < values(from - inside_voxels * values.step_mm(n) * n) - gap_hu;
+  const auto beside_gap = [&](std::size_t v) {
+    const Eigen::Vector3d from = before.vertices[v],
+                          step = 0.5 * values.step_mm(normals[v]) * normals[v];
+    double inside = values(from);
+    for (int n = 1; n <= 4; ++n) inside = std::max(inside, values(from - n * step));
+    return values(from) < inside - gap_hu;
   };
   parallel_for(before.vertices.size(), threads, [&](std::size_t v) {
     const Eigen::Vector3d q = (volume.axes.transpose() * (mesh.vertices[v] - volume.origin))
@@ -121,10 +123,12 @@ void part_from_other_bones(const Volume& volume, const BoneVoxels& bone, VoxelLa
       beside = beside || other != no_bone;
       apart = apart || (other != no_bone && live_apart(label, other));
     }
-    if (!beside || left_a_gap(v)) return;
-    mesh.vertices[v] = before.vertices[v];
+    if (!beside) return;
     const Eigen::Vector3d& n = normals[v];
-    if (apart) mesh.vertices[v] -= 0.5 * least_gap_voxels * values.step_mm(n) * n;
+    const bool inward = (mesh.vertices[v] - before.vertices[v]).dot(n) < 0, gap = beside_gap(v);
+    if (inward && gap) return;
+    mesh.vertices[v] = before.vertices[v];
+    if (apart && !gap) mesh.vertices[v] -= 0.5 * least_gap_voxels * values.step_mm(n) * n;
   });
 }
 

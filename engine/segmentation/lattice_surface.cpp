@@ -59,6 +59,13 @@ void mark_around(const TriMesh& mesh, const std::vector<int>& vertices, int ring
   }
 }
 
+std::vector<int> corners_of(const TriMesh& mesh, const std::vector<int>& triangles) {
+  std::vector<int> corners;
+  for (const int t : triangles)
+    for (const int v : mesh.triangles[static_cast<std::size_t>(t)]) corners.push_back(v);
+  return corners;
+}
+
 /// About so many triangles, closed: where collapsed edges would open the surface, or let it pass
 /// through itself, its triangles stay as they are. Empty when that does not succeed.
 TriMesh decimated_closed(const TriMesh& mesh, int target, int threads) {
@@ -67,7 +74,10 @@ TriMesh decimated_closed(const TriMesh& mesh, int target, int threads) {
   std::vector<Eigen::Vector3f> positions;
   for (const Vector3d& p : mesh.vertices) positions.push_back((p - middle).cast<float>());
   std::vector<char> kept(mesh.triangles.size(), 0);
-  const bool crosses = !self_crossings(mesh, threads).empty();
+  std::vector<char> crossed(mesh.vertices.size(), 0);
+  for (const int v : corners_of(mesh, self_crossings(mesh, threads)))
+    crossed[static_cast<std::size_t>(v)] = 1;
+  TriMesh closed;
   for (int round = 0; round < rounds; ++round) {
     std::vector<Vector3i> free, result;
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
@@ -79,16 +89,16 @@ TriMesh decimated_closed(const TriMesh& mesh, int target, int threads) {
     drop_flaps(result);
     TriMesh decimated{mesh.vertices, std::move(result), {}};
     std::vector<int> wrong = open_vertices(decimated);
-    if (!crosses)
-      for (const int t : self_crossings(decimated, threads))
-        for (const int v : decimated.triangles[static_cast<std::size_t>(t)]) wrong.push_back(v);
     if (wrong.empty()) {
-      drop_unreferenced(decimated);
-      return decimated;
+      wrong = corners_of(decimated, self_crossings(decimated, threads));
+      std::erase_if(wrong, [&](int v) { return crossed[static_cast<std::size_t>(v)] != 0; });
+      closed = std::move(decimated);
+      if (wrong.empty()) break;
     }
     mark_around(mesh, wrong, 3 + round, kept);
   }
-  return {};
+  drop_unreferenced(closed);
+  return closed;
 }
 
 }  // namespace

@@ -13,8 +13,8 @@ namespace condyle {
 TriMesh lattice_surface(const Volume& volume, const VoxelBox& box, std::vector<float> values,
                         double least_mm3);
 
-/// What no decimated surface may have: triangles that pass through others, where the surface would
-/// be inside out, or ones that are folded onto their neighbours, as far as either is possible.
+/// The flaw that is removed last and therefore stays only where it cannot be removed: triangles
+/// that pass through others, where the surface is inside out, or ones folded onto their neighbours.
 enum class Flaws { crossings, folds };
 
 /// Decimates the surface, without the worse flaws for its use, and measures the error.

@@ -173,9 +173,11 @@ void drop_streaks(const Volume& volume, const MetalSlab& slab, BoneVoxels& bone,
                                farthest_beside_mm);
     return distance;
   };
-  if (before < 0 && after >= slices) return;
-  const std::vector<float> below = from_bone(before < 0 ? after : before),
-                           above = from_bone(after >= slices ? before : after);
+  // At the ends of the scan the box reaches beyond it: its outermost slices hold no bone.
+  const bool has_below = before >= 1, has_above = after <= slices - 2;
+  if (!has_below && !has_above) return;
+  const std::vector<float> below = from_bone(has_below ? before : after),
+                           above = from_bone(has_above ? after : before);
   const Eigen::Vector3d origin = bone.box.position(volume, 0, 0, 0);
   const std::vector<float> from_metal = metal_distances(lattice, slab, volume, origin);
   const int first = std::max(before + 1, 0), last = std::min(after, slices);
@@ -185,7 +187,10 @@ void drop_streaks(const Volume& volume, const MetalSlab& slab, BoneVoxels& bone,
     for (std::size_t p = 0; p < lattice.pixels(); ++p) {
       VoxelLabel& here = label(p, slice);
       if (!is_bone(here) || from_metal[p] >= square(streak_reach_mm)) continue;
-      const double away_mm = (1 - share) * below[p] + share * above[p];
+      // Bone that ends inside the slab, such as a crown with the jaws apart, is near one end alone.
+      const bool ends = std::max(below[p], above[p]) >= farthest_beside_mm;
+      const double away_mm =
+          ends ? std::min(below[p], above[p]) : (1 - share) * below[p] + share * above[p];
       const auto at = lattice.place(p, slice);
       const double least_hu =
           bone.threshold_hu + rise_hu_per_mm * std::max(0.0, away_mm - faint_from_mm);

@@ -7,14 +7,14 @@
 // Streaks from metal. Only for this module.
 namespace condyle {
 
-/// The slices with metal in the bone, and 2 mm beyond; none without metal, and none where it spans
+/// The slices with metal in the bone, and 1 mm beyond; none without metal, and none where it spans
 /// more than 40 mm.
 std::optional<MetalSlab> find_metal(const Volume& volume, const BoneVoxels& bone);
 
-/// Gives what is bright in the slab, not farther than 50 mm from the metal, the label of what is no
-/// bone where it is farther than 4 mm from bone that is interpolated between the slices above and
-/// below the slab, and nearer than that where it is faint: the least value of bone rises with the
-/// distance.
+/// Relabels as no bone what is bright in the slab, within 50 mm of the metal, and more than 4 mm
+/// outside the bone that is interpolated between the slices below and above it; from 1 to 4 mm
+/// outside only what is faint: the least value of bone rises with the distance. Bone that is more
+/// than 10 mm from that of one end counts from the other.
 void drop_streaks(const Volume& volume, const MetalSlab& slab, BoneVoxels& bone, int threads);
 
 /// Repairs the outline of the head in the slab where it is farther than 3 mm outside or 4 mm inside

@@ -228,6 +228,7 @@ INLINE Lanes inverse_root_of_floats(const Lanes& v) {
 #pragma GCC target("avx2,fma")
 #ifdef __clang__
 #pragma clang attribute push(__attribute__((target("avx2,fma"))), apply_to = function)
+#pragma clang fp contract(fast)
 #endif
 namespace avx2 {
 CONDYLE_ONE_BATCH
@@ -272,6 +273,7 @@ INLINE Lanes inverse_root_of_floats(const Lanes& v) {
 #pragma GCC pop_options
 #ifdef __clang__
 #pragma clang attribute pop
+#pragma clang fp contract(off)
 #endif
 #endif
 

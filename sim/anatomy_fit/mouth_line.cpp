@@ -25,22 +25,27 @@ struct Hollow {
 /// within `reach`. Each is the deepest of its surroundings: the side of a hollow is none.
 std::optional<Hollow> hollow_near(const FrontProfile& front, double height, double reach) {
   std::map<int, double> depths;
-  double most = 0;
-  for (const auto& [bin, y] : front) {
-    if (std::abs(profile_height(bin) - height) > reach) continue;
-    const double depth = hollow_depth(front, bin, y);
-    depths[bin] = depth;
+  for (const auto& [bin, y] : front)
+    if (std::abs(profile_height(bin) - height) <= reach + alone_mm)
+      depths[bin] = hollow_depth(front, bin, y);
+  const auto is_deepest = [&](int bin, double depth) {
+    return std::none_of(depths.begin(), depths.end(), [&](const auto& other) {
+      return std::abs(profile_height(other.first) - profile_height(bin)) <= alone_mm &&
+             other.second > depth;
+    });
+  };
+  std::map<int, double> hollows;
+  double most = least_depth_mm;
+  for (const auto& [bin, depth] : depths) {
+    if (std::abs(profile_height(bin) - height) > reach || depth < least_depth_mm) continue;
+    if (!is_deepest(bin, depth)) continue;
+    hollows[bin] = depth;
     most = std::max(most, depth);
   }
-  if (most < least_depth_mm) return std::nullopt;
   std::optional<Hollow> best;
-  for (const auto& [bin, depth] : depths) {
+  for (const auto& [bin, depth] : hollows) {
     const double z = profile_height(bin);
-    if (depth < std::max(most - about_as_deep_mm, least_depth_mm)) continue;
-    const auto deeper = std::find_if(depths.begin(), depths.end(), [&](const auto& other) {
-      return std::abs(profile_height(other.first) - z) <= alone_mm && other.second > depth;
-    });
-    if (deeper != depths.end()) continue;
+    if (depth < most - about_as_deep_mm) continue;
     if (!best || std::abs(z - height) < std::abs(best->z - height)) best = Hollow{front.at(bin), z};
   }
   return best;
@@ -74,8 +79,20 @@ class MouthLine {
       const auto hollow = hollow_near(front_profile(skin_, next), at.z(), climb_mm);
       if (hollow) at = {next, hollow->y, hollow->z};
     }
-    if (std::abs(at.x() - x) > ends_early_mm) return std::nullopt;
+    if (std::abs(at.x() - middle.x()) < width - ends_early_mm) return std::nullopt;
     return at;
+  }
+
+  /// The front of the skin at a height.
+  Vector3d on_skin(const Vector3d& near) const {
+    Vector3d best = near;
+    double least = 1e9;
+    for (const auto& [bin, y] : front_profile(skin_, near.x()))
+      if (const double off = std::abs(profile_height(bin) - near.z()); off < least) {
+        least = off;
+        best.y() = y;
+      }
+    return best;
   }
 
   /// The foremost point of a lip, between two heights.
@@ -141,7 +158,7 @@ void find_mouth_line(std::map<std::string, ProposedLandmark>& marks, const TriMe
     if (ProposedLandmark* mark = find(name)) {
       const Vector3d at = in_head(mark->point);
       const auto corner = line.corner(*middle, at.x());
-      place(name, corner.value_or(at + Vector3d(0, 0, shift)));
+      place(name, corner.value_or(line.on_skin(at + Vector3d(0, 0, shift))));
       if (corner) continue;
       mark->doubtful = true;
       mark->reason = "the line between the lips was not found up to the corner";

@@ -46,7 +46,7 @@ std::vector<Column> make_columns(CoarseSkin& skin, const Bones& bones, const Ana
   // rounds of smoothing before more of the surroundings of a few folds moves, and before triangles
   // are unfolded
   constexpr int before_widening = 12, before_ears = 20, max_rounds = 40;
-  constexpr std::size_t few = 50;  // one of so many columns
+  constexpr std::size_t columns_per_fold = 50;  // folds are few up to one in so many columns
   std::vector<Column> columns;
   ShapedColumns shaped;
   int rounds = 0;
@@ -58,7 +58,7 @@ std::vector<Column> make_columns(CoarseSkin& skin, const Bones& bones, const Ana
     if (shaped.sound() || rounds == max_rounds) break;
     if (rounds >= before_ears) unfold_ears(skin, shaped.folded);
     const auto folded = std::count(shaped.folded.begin(), shaped.folded.end(), 1);
-    const bool local = static_cast<std::size_t>(folded) * few <= columns.size();
+    const bool local = static_cast<std::size_t>(folded) * columns_per_fold <= columns.size();
     relax_folds(skin, shaped.folded, 1 + (local ? std::max(0, rounds - before_widening) / 4 : 0));
   }
   if (shaped.thinned > 0)

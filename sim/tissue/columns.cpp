@@ -212,17 +212,22 @@ void relax_folds(CoarseSkin& skin, const std::vector<char>& folded, int rings) {
         for (int n : ring[v]) moves[n] = 1;
   }
   constexpr int borders_stay = 3;  // rings; a sharp bend of a border may move after that
+  std::vector<std::vector<int>> means = ring;  // of each vertex that moves
   for (const auto& loop : border_loops(skin.mesh)) {
     const bool is_mouth = std::find(loop.begin(), loop.end(), skin.mouth.left_corner) != loop.end();
-    for (int v : loop) moves[v] = rings > borders_stay && !is_mouth && folded[v];
+    for (std::size_t i = 0; i < loop.size(); ++i) {
+      const int v = loop[i];
+      moves[v] = rings > borders_stay && !is_mouth && folded[v];
+      means[v] = {loop[(i + loop.size() - 1) % loop.size()], loop[(i + 1) % loop.size()]};
+    }
   }
   for (int round = 0; round < 3; ++round) {
     const auto before = skin.mesh.vertices;
     for (std::size_t v = 0; v < moves.size(); ++v) {
       if (!moves[v]) continue;
       Vector3d sum = Vector3d::Zero();
-      for (int n : ring[v]) sum += before[n];
-      skin.mesh.vertices[v] = 0.5 * before[v] + 0.5 * sum / static_cast<double>(ring[v].size());
+      for (int n : means[v]) sum += before[n];
+      skin.mesh.vertices[v] = 0.5 * before[v] + 0.5 * sum / static_cast<double>(means[v].size());
     }
   }
 }

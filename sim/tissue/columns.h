@@ -66,7 +66,8 @@ ShapedColumns shape_columns(const CoarseSkin& skin, const ColumnSettings& settin
                             std::vector<Column>& columns);
 
 /// Smooths the sheet around folded columns, up to so many rings of neighbours. Its borders are
-/// fixed; from four rings on, the folded vertices of those other than the mouth move, too.
+/// fixed; from four rings on, the folded vertices of those other than the mouth move along
+/// them, too.
 void relax_folds(CoarseSkin& skin, const std::vector<char>& folded, int rings);
 
 /// Flattens folded triangles that are connected to the sheet by one edge only, as at the corners of

@@ -173,7 +173,7 @@ TEST(Segmentation, AJointOpensWhereThickVoxelsShowNoGap) {
     double least = 10;
     std::size_t near = 0;
     for (const auto& p : mandible.vertices) {
-      if (p.y() < -25 || p.z() < -12) continue;
+      if (p.y() < -25 || p.z() < -12) continue;  // the condyles are left
       ++near;
       least = std::min(least, tree.signed_distance(p));
     }

@@ -104,12 +104,19 @@ TEST(CtCase, ThickVoxelsKeepTheMouthAndTheBite) {
   const Case truth = builtin_patient();
   for (const char* name : {"stomion", "left_cheilion", "right_cheilion"})
     EXPECT_LT((made.fit.landmarks.at(name).point - *truth.landmarks.find(name)).norm(), 2) << name;
-  // Crowns that touch in the scan are not inside each other.
+  // Crowns that touch in the scan are not deep in each other.
+  ASSERT_TRUE(made.patient.find(Role::upper_teeth) && made.patient.find(Role::lower_teeth));
   const TriangleTree upper(made.patient.find(Role::upper_teeth)->mesh);
   double deepest = 0;
   for (const Vector3d& v : made.patient.find(Role::lower_teeth)->mesh.vertices)
     deepest = std::min(deepest, upper.signed_distance(v));
   EXPECT_GT(deepest, -0.3);
+  // Its voxels are too large for the joints: there is a disc all the same, with a note.
+  ASSERT_TRUE(made.patient.motion.disc_gap_front_mm);
+  EXPECT_EQ(*made.patient.motion.disc_gap_front_mm, 1);
+  EXPECT_TRUE(std::any_of(made.patient.notes.begin(), made.patient.notes.end(), [](const auto& n) {
+    return n.find("less than a voxel") != std::string::npos;
+  }));
 }
 
 TEST(CtCase, SeedsMustLieInBone) {
