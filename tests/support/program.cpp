@@ -14,12 +14,13 @@
 #include <thread>
 
 #include "tests/support/places.h"
+#include "tests/support/sanitizers.h"
 
 namespace condyle::test {
 namespace fs = std::filesystem;
 
 namespace {
-#ifdef __SANITIZE_ADDRESS__
+#ifdef CONDYLE_ADDRESS_SANITIZER
 constexpr bool reserves_address_space = true;  // AddressSanitizer takes terabytes at the start
 #else
 constexpr bool reserves_address_space = false;

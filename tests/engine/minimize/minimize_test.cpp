@@ -1,32 +1,19 @@
 #include "engine/minimize/minimize.h"
 
 #include <gtest/gtest.h>
-#include <malloc.h>
 
 #include <Eigen/Geometry>
 #include <cmath>
 #include <limits>
 
+#include "tests/support/allocated.h"
 #include "tools/bench/baseline/baseline_minimizers.h"
 #include "tools/bench/baseline/line_search.h"
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-extern "C" std::size_t __sanitizer_get_current_allocated_bytes();  // their own allocator's
-#endif
 
 namespace condyle {
 namespace {
 
 using Eigen::Vector3d;
-
-std::size_t allocated_bytes() {
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  return __sanitizer_get_current_allocated_bytes();
-#else
-  const auto info = mallinfo2();
-  return info.uordblks + info.hblkhd;
-#endif
-}
 
 /// A chain of points: stiff springs of length one from each to the next, the ends pulled apart and
 /// up; infinite below the floor z = -1. Samples the memory in use at each evaluation.
