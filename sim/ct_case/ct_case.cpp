@@ -230,11 +230,14 @@ class CtSegmentation {
     if (!joints) return;
     const double gap_mm = joints->rest_gap_mm();
     if (gap_mm >= std::min(least_disc_mm, volume_.spacing_mm.maxCoeff())) return;
-    patient().motion.disc_gap_front_mm = least_disc_mm;
+    // The wider joint shows more of its disc, and keeps it.
+    const double disc_mm = std::max(
+        {least_disc_mm, joints->rest_gap_mm(JawSide::left), joints->rest_gap_mm(JawSide::right)});
+    patient().motion.disc_gap_front_mm = disc_mm;
     patient().notes.push_back(
-        fmt::format("the scan shows a gap of {:.1f} mm in the joints, less than a voxel: the disc "
-                    "is assumed to be {:.0f} mm thick on the eminence",
-                    gap_mm, least_disc_mm));
+        fmt::format("the scan shows a gap of {:.1f} mm in a joint, less than a voxel: the discs "
+                    "are assumed to be {:.1f} mm thick on the eminences",
+                    gap_mm, disc_mm));
   }
 
   const Volume& volume_;

@@ -113,7 +113,7 @@ TEST(CtCase, ThickVoxelsKeepTheMouthAndTheBite) {
   EXPECT_GT(deepest, -0.3);
   // Its voxels are too large for the joints: there is a disc all the same, with a note.
   ASSERT_TRUE(made.patient.motion.disc_gap_front_mm);
-  EXPECT_EQ(*made.patient.motion.disc_gap_front_mm, 1);
+  EXPECT_GE(*made.patient.motion.disc_gap_front_mm, 1);
   EXPECT_TRUE(std::any_of(made.patient.notes.begin(), made.patient.notes.end(), [](const auto& n) {
     return n.find("less than a voxel") != std::string::npos;
   }));
