@@ -84,4 +84,10 @@ std::size_t uncross(TriMesh& mesh, const std::vector<Vector3d>& before, int thre
   return self_crossings(mesh, threads).size();
 }
 
+void unfold_apart(TriMesh& mesh, const UnfoldSettings& settings, int threads) {
+  const std::vector<Vector3d> before = mesh.vertices;
+  unfold(mesh, settings);
+  uncross(mesh, before, threads);
+}
+
 }  // namespace condyle

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "engine/mesh/tri_mesh.h"
+#include "engine/mesh/unfold.h"
 
 namespace condyle {
 
@@ -15,5 +16,8 @@ std::vector<int> self_crossings(const TriMesh& mesh, int threads = 1);
 /// there. `before`: positions (mm), of a surface without crossings, by vertex. Returns the number
 /// of triangles that still cross.
 std::size_t uncross(TriMesh& mesh, const std::vector<Eigen::Vector3d>& before, int threads = 1);
+
+/// As unfold(), but vertices that would make a surface without crossings cross itself stay.
+void unfold_apart(TriMesh& mesh, const UnfoldSettings& settings = {}, int threads = 1);
 
 }  // namespace condyle

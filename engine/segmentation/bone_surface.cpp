@@ -153,10 +153,7 @@ ScanSurface bone_surface(const Volume& volume, const BoneVoxels& bone, VoxelLabe
   const UnfoldSettings flat{.most_mm = 0.5 * volume.spacing_mm.minCoeff()};
   unfold(surface.mesh, flat);
   uncross(surface.mesh, before.vertices, options.threads);
-  // What went back may be folded again.
-  const std::vector<Eigen::Vector3d> folded = surface.mesh.vertices;
-  unfold(surface.mesh, flat);
-  uncross(surface.mesh, folded, options.threads);
+  unfold_apart(surface.mesh, flat, options.threads);  // what went back may be folded again
   decimate_surface(surface, Flaws::crossings, options, progress);
   return surface;
 }

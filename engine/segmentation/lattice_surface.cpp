@@ -125,9 +125,10 @@ void decimate_surface(ScanSurface& surface, Flaws worse, const SurfaceOptions& o
   if (static_cast<int>(surface.mesh.triangles.size()) > options.target_triangles)
     coarse = decimated_closed(surface.mesh, options.target_triangles, options.threads);
   if (coarse.empty()) coarse = simplify(surface.mesh, options.target_triangles);
-  const std::vector<Vector3d> folded = coarse.vertices;
-  unfold(coarse);
-  if (worse == Flaws::crossings) uncross(coarse, folded, options.threads);
+  if (worse == Flaws::crossings)
+    unfold_apart(coarse, {}, options.threads);
+  else
+    unfold(coarse);
   report(progress, "decimating", 0.8);
   const TriangleTree tree(coarse);
   constexpr std::size_t every = 7;

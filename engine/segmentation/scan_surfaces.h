@@ -22,9 +22,9 @@ struct ScanSurface {
   double decimation_median_mm = 0, decimation_p95_mm = 0, decimation_max_mm = 0;
 };
 
-/// The surface of the bone with a label, apart from the others; it does not pass through itself.
-/// Where the bones of the two jaws meet and the scan shows no gap, it lies half a voxel inside its
-/// bone. Without such voxels it is empty.
+/// The surface of the bone with a label, apart from the others. It does not pass through itself
+/// where that can be avoided. Where the bones of the two jaws meet and the scan shows no gap, it
+/// lies half a voxel inside its bone. Without such voxels it is empty.
 ScanSurface bone_surface(const Volume& volume, const BoneVoxels& bone, VoxelLabel label,
                          const SurfaceOptions& options = {}, const Progress& progress = {});
 
