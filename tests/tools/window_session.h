@@ -144,6 +144,20 @@ class WindowSession : public testing::Test {
     std::this_thread::sleep_for(std::chrono::milliseconds(150));  // until it is on the screen
     return keep(step, display_->picture());
   }
+  /// The screen once more than a fraction of an item's pixels differ from the step before; after
+  /// 20 s as it is. A busy machine shows an item, and gives it its size, after the state names it.
+  /// Returns the item's region.
+  Region see_changed(const std::string& step, const std::string& item, double fraction) {
+    Region region = region_of(item);
+    Picture now = display_->picture();
+    for (int i = 0; i < 100 && !(difference(now, seen_, region) > fraction); ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(200));
+      region = region_of(item);
+      now = display_->picture();
+    }
+    keep(step, std::move(now));
+    return region;
+  }
   Region region_of(const std::string& item) {
     const auto r = rect(item);
     return {r[0], r[1], r[2], r[3]};

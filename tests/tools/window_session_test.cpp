@@ -116,9 +116,7 @@ TEST_F(WindowSession, ATooltipIsSeenThoughNothingElseMoves) {
     const auto r = rect(item);
     EXPECT_TRUE(xdotool({"mousemove", px(r[0] + r[2] / 2), px(r[1] + r[3] / 2)}));
     ASSERT_TRUE(wait_for_item("tooltip"));
-    std::this_thread::sleep_for(std::chrono::milliseconds(300));
-    const Region place = region_of("tooltip");
-    see_now("tooltip-of-" + item);
+    const Region place = see_changed("tooltip-of-" + item, "tooltip", 0.1);
     EXPECT_TRUE(unlike(seen_, seen_before_, 0.1, place)) << item;
     EXPECT_TRUE(xdotool({"mousemove", "640", "690"}));
     ASSERT_TRUE(wait_for_item("tooltip", false));
