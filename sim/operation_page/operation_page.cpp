@@ -259,12 +259,16 @@ class OperationPageWriter {
         "of soft tissue at rest; swelling, growth and muscles that adapt are not part of "
         "it.</p>\n",
         page_.prediction->max_displacement_mm());
-    const PageTable ratios = ratio_table(soft_ratios(*page_.prediction, *frame_));
-    if (!ratios.rows.empty())
+    const std::vector<SoftRatio> ratios = soft_ratios(*page_.prediction, *frame_);
+    if (!ratios.empty()) {
       html_.add(
           "<h3>Ratios of soft tissue to bone</h3>\n{}<p class=\"small\">Sagittal movement. "
-          "Published ranges are averages over patients.</p>\n",
-          table_html(ratios));
+          "Published ranges are averages over patients.",
+          table_html(ratio_table(ratios)));
+      for (const std::string& sentence : ratios_outside(ratios))
+        html_.add(" {}.", escaped(sentence));
+      html_ += "</p>\n";
+    }
     if (page_.prediction->unsettled_mm > 0.1)
       html_.add("<p>The solution oscillates by up to {:.1f} mm.</p>\n",
                 page_.prediction->unsettled_mm);

@@ -128,11 +128,11 @@ PageTable overlaps_table(const std::vector<SegmentOverlap>& overlaps) {
 PageTable ratio_table(const std::vector<SoftRatio>& ratios) {
   PageTable table{{"Soft tissue", "Bone", "Bone moves", "Face moves", "Ratio", "Published"}, {}};
   for (const SoftRatio& ratio : ratios)
-    table.rows.push_back(
-        {point_words(display_name(ratio.soft)), point_words(readable_name(ratio.hard)),
-         in_words(ratio.hard_mm, "mm forward", "mm back"),
-         in_words(ratio.soft_mm, "mm forward", "mm back"), fmt::format("{:.2f}", ratio.ratio()),
-         ratio.low && ratio.high ? fmt::format("{:g} to {:g}", *ratio.low, *ratio.high) : ""});
+    table.rows.push_back({point_words(display_name(ratio.soft)),
+                          point_words(readable_name(ratio.hard)),
+                          in_words(ratio.hard_mm, "mm forward", "mm back"),
+                          in_words(ratio.soft_mm, "mm forward", "mm back"),
+                          fmt::format("{:.2f}", ratio.ratio()), published_range(ratio)});
   return table;
 }
 

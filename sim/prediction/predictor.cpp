@@ -128,7 +128,8 @@ Prediction Predictor::predict(const Plan& plan, const Progress& progress) {
   const auto start = std::chrono::steady_clock::now();
   const auto& planned = operated_.poses.X_CB;
   begin_at_rest();
-  if (!std::all_of(planned.begin(), planned.end(), is_identity)) move_from_rest(progress);
+  if (tissue_.grafted || !std::all_of(planned.begin(), planned.end(), is_identity))
+    move_from_rest(progress);
   deform_face(*tissue_.model, state_, prediction.after, settings_.threads);
   if (!state_.converged)
     prediction.unsettled_mm = change_of_face(prediction, state_, warm_, settings_.threads);

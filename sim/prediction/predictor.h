@@ -33,6 +33,9 @@ class Predictor {
   /// throws: InputError as apply_plan().
   const Operated& prepare(const Plan& plan, const Progress& progress = {});
 
+  /// What the cuts of the prepared plan strip.
+  const Stripping& stripping() const { return tissue_.stripping; }
+
   /// The settled face. throws: InputError as apply_plan(); MachineError where the tissue has no
   /// solution.
   Prediction predict(const Plan& plan, const Progress& progress = {});

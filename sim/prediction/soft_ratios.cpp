@@ -19,26 +19,39 @@ struct PublishedRatio {
   Moves moves;
   std::optional<double> low, high;
   const char* source = "";
+  const char* limit = "";  // of the model, where it may leave the range
 };
+constexpr const char* lip_forward =
+    "the upper lip follows the teeth whole: it does not thin in the model";
+constexpr const char* lip_back = "the lips do not stick to each other in the model";
+constexpr const char* stomion_limit =
+    "stomion is one point of the skin and follows the lip on which it lies";
+constexpr const char* corner_limit =
+    "the corners follow both lips, which do not stick to each other";
+constexpr const char* chin_back = "the ledge above the cut holds the tissue back where it is high";
 // Naoumova 2008: Eur J Orthod 30:359 (42 patients). Kim 2010: Angle Orthod 80:896 (26 patients),
 // whose landmarks are given as parts of soft B', which moves as the bone does.
 const std::array published{
     PublishedRatio{"pronasale", "a_point", true, Moves::any, 0.2, 0.35, "textbooks"},
     PublishedRatio{"subnasale", "a_point", true, Moves::any, 0.5, 0.6, "textbooks"},
     PublishedRatio{"labrale_superius", "upper_incisal_point", true, Moves::any, 0.6, 0.9,
-                   "textbooks"},
+                   "textbooks", lip_forward},
     PublishedRatio{"labrale_superius", "upper_incisal_point", false, Moves::any, {}, {}},
     PublishedRatio{"soft_pogonion", "pogonion", true, Moves::chin_alone, 0.85, 1.0, "textbooks"},
-    PublishedRatio{"soft_pogonion", "pogonion", false, Moves::chin_alone, 0.6, 0.8, "textbooks"},
+    PublishedRatio{"soft_pogonion", "pogonion", false, Moves::chin_alone, 0.6, 0.8, "textbooks",
+                   chin_back},
     PublishedRatio{"labrale_inferius", "lower_incisal_point", true, Moves::lower_jaw, 0.6, 0.8,
                    "textbooks"},
     PublishedRatio{"soft_b_point", "b_point", true, Moves::lower_jaw, {}, {}},
     PublishedRatio{"soft_pogonion", "pogonion", true, Moves::lower_jaw, 0.9, 1.0, "textbooks"},
-    PublishedRatio{"labrale_superius", "b_point", false, Moves::lower_alone, 0.15, 0.15,
-                   "Kim 2010"},
-    PublishedRatio{"stomion", "b_point", false, Moves::lower_alone, 0.24, 0.24, "Kim 2010"},
-    PublishedRatio{"left_cheilion", "b_point", false, Moves::lower_alone, 0.51, 0.51, "Kim 2010"},
-    PublishedRatio{"right_cheilion", "b_point", false, Moves::lower_alone, 0.51, 0.51, "Kim 2010"},
+    PublishedRatio{"labrale_superius", "b_point", false, Moves::lower_alone, 0.15, 0.15, "Kim 2010",
+                   lip_back},
+    PublishedRatio{"stomion", "b_point", false, Moves::lower_alone, 0.24, 0.24, "Kim 2010",
+                   stomion_limit},
+    PublishedRatio{"left_cheilion", "b_point", false, Moves::lower_alone, 0.51, 0.51, "Kim 2010",
+                   corner_limit},
+    PublishedRatio{"right_cheilion", "b_point", false, Moves::lower_alone, 0.51, 0.51, "Kim 2010",
+                   corner_limit},
     PublishedRatio{"labrale_inferius", "lower_incisal_point", false, Moves::lower_jaw, 0.6, 1.03,
                    "textbooks; Kim 2010"},
     PublishedRatio{"soft_b_point", "b_point", false, Moves::lower_jaw, 0.9, 1.1,
@@ -58,6 +71,7 @@ std::string stripping_text(const Stripping& stripping) {
       fmt::format("soft tissue stripped from bone: {} of {} attachments ({} within {:g} mm of cuts",
                   stripping.stripped(), stripping.attachments, stripping.near_cuts,
                   stripping.settings.reach_mm);
+  if (stripping.resected > 0) text += fmt::format(", {} on resected bone", stripping.resected);
   if (stripping.on_maxilla > 0)
     text += fmt::format(", {} on the front of the maxilla", stripping.on_maxilla);
   if (stripping.above_chin > 0) text += fmt::format(", {} above the chin", stripping.above_chin);
@@ -66,10 +80,14 @@ std::string stripping_text(const Stripping& stripping) {
 }
 
 std::string literature_text(const SoftRatio& row) {
-  if (!row.low) return "unknown";
-  const std::string range = *row.low < *row.high ? fmt::format("{:g} to {:g}", *row.low, *row.high)
-                                                 : fmt::format("{:g}", *row.low);
-  return fmt::format("{} ({})", range, row.source);
+  return row.low ? fmt::format("{} ({})", published_range(row), row.source) : "unknown";
+}
+
+/// Outside a published range, or farther than 0.1 from a published mean.
+bool is_outside(const SoftRatio& row) {
+  if (!row.low) return false;
+  const double beside = *row.low < *row.high ? 0 : 0.1;
+  return row.ratio() < *row.low - beside || row.ratio() > *row.high + beside;
 }
 
 std::string spaced(std::string name) {
@@ -79,6 +97,22 @@ std::string spaced(std::string name) {
 }
 
 }  // namespace
+
+std::string published_range(const SoftRatio& row) {
+  if (!row.low) return "";
+  return *row.low < *row.high ? fmt::format("{:g} to {:g}", *row.low, *row.high)
+                              : fmt::format("{:g}", *row.low);
+}
+
+std::vector<std::string> ratios_outside(const std::vector<SoftRatio>& ratios) {
+  std::vector<std::string> sentences;
+  for (const SoftRatio& row : ratios)
+    if (is_outside(row))
+      sentences.push_back(fmt::format("{} ({:.2f}) is outside the published {}{}{}",
+                                      spaced(row.soft), row.ratio(), published_range(row),
+                                      row.limit.empty() ? "" : ": ", row.limit));
+  return sentences;
+}
 
 std::vector<SoftRatio> soft_ratios(const Prediction& prediction, const ClinicalFrame& frame) {
   constexpr double least_mm = 0.5;
@@ -112,7 +146,8 @@ std::vector<SoftRatio> soft_ratios(const Prediction& prediction, const ClinicalF
     if (std::abs(hard_mm) < least_mm || (hard_mm > 0) != row.forward) continue;
     if (!is_of(row.moves)) continue;
     ratios.push_back({row.soft, row.hard, hard_mm, -frame.back.dot(soft->after - soft->before),
-                      row.low, row.high, row.source});
+                      row.low, row.high, row.source, ""});
+    if (SoftRatio& ratio = ratios.back(); is_outside(ratio)) ratio.limit = row.limit;
   }
   return ratios;
 }
@@ -135,6 +170,7 @@ std::string prediction_text(const Prediction& prediction, const ClinicalFrame& f
     text +=
         fmt::format("{:<20}  {:<21}{:>8.1f}{:>8.1f}{:>8.2f}  {}\n", spaced(row.soft),
                     spaced(row.hard), row.hard_mm, row.soft_mm, row.ratio(), literature_text(row));
+  for (const std::string& sentence : ratios_outside(ratios)) text += sentence + "\n";
   if (const Stripping& stripping = prediction.stripping; stripping.stripped() > 0)
     text += fmt::format("\n{}\n", stripping_text(stripping));
   text += fmt::format(
@@ -169,6 +205,7 @@ Json prediction_json(const Prediction& prediction, const ClinicalFrame& frame) {
                        {"on_maxilla", stripping.on_maxilla},
                        {"above_chin", stripping.above_chin},
                        {"on_chin", stripping.on_chin},
+                       {"on_resected_bone", stripping.resected},
                        {"reach_mm", stripping.settings.reach_mm},
                        {"remains_near_cuts", stripping.settings.near_cut},
                        {"remains_on_maxilla", stripping.settings.on_maxilla},
@@ -184,6 +221,7 @@ Json prediction_json(const Prediction& prediction, const ClinicalFrame& frame) {
                {"ratio", row.ratio()}};
     if (row.low)
       entry["published"] = {{"low", *row.low}, {"high", *row.high}, {"source", row.source}};
+    if (!row.limit.empty()) entry["limit"] = row.limit;
     json["ratios"].push_back(std::move(entry));
   }
   return json;

@@ -17,12 +17,19 @@ struct SoftRatio {
   // Range of the literature for this direction, where one is known.
   std::optional<double> low, high;
   std::string source;
+  std::string limit;  // why the model may leave the range; empty inside it
 
   double ratio() const { return soft_mm / hard_mm; }
 };
 
 /// Rows for the pairs whose bone moves at least 0.5 mm forward or back.
 std::vector<SoftRatio> soft_ratios(const Prediction& prediction, const ClinicalFrame& frame);
+
+/// "0.6 to 0.8", "0.24" for a mean alone, empty where none is known.
+std::string published_range(const SoftRatio& row);
+/// One sentence for each ratio outside its published range, or farther than 0.1 from a mean, with
+/// the limit of the model that explains it.
+std::vector<std::string> ratios_outside(const std::vector<SoftRatio>& ratios);
 
 /// Displacements of the soft landmarks in words, then the ratios: aligned text.
 std::string prediction_text(const Prediction& prediction, const ClinicalFrame& frame);

@@ -10,9 +10,9 @@
 namespace condyle {
 namespace {
 
-/// A cut of the plan as its cut faces, with the bodies of the segments that it made.
+/// A cut of the plan as its cut faces, with the bodies of the segments that it made, or a trim.
 struct CutSite {
-  std::string osteotomy;
+  std::string osteotomy;  // empty: a trim
   TriangleTree faces;
   std::vector<BodyId> segments;
 };
@@ -51,6 +51,9 @@ std::vector<CutSite> sites_of(const Operated& operated, const Plan& plan) {
         site.segments.push_back(*body);
     sites.push_back(std::move(site));
   }
+  for (const TrimReport& trim : operated.trims)
+    if (const TriMesh faces = cut_faces(operated, trim.step); !faces.triangles.empty())
+      sites.push_back({"", TriangleTree(faces), {}});
   return sites;
 }
 
@@ -59,7 +62,12 @@ class PieceFinder {
  public:
   explicit PieceFinder(const CutBone& cut) : cut_(cut), tree_(cut.surface) {}
   BodyId whole() const { return cut_.whole; }
-  BodyId owner(const Eigen::Vector3d& p) const { return cut_.owner[tree_.nearest(p).triangle]; }
+  /// The piece, or none where the bone was resected.
+  std::optional<BodyId> owner(const Eigen::Vector3d& p) const {
+    const int nearest = tree_.nearest(p).triangle;
+    if (!cut_.resected.empty() && cut_.resected[nearest]) return std::nullopt;
+    return cut_.owner[nearest];
+  }
 
  private:
   const CutBone& cut_;
@@ -96,10 +104,18 @@ Stripping strip(const TissueModel& tissue, const Operated& operated, const Plan&
     });
     if (bone == bones.end()) continue;
     const Eigen::Vector3d& p = mesh.rest[mesh.elements.anchor_node[i]];
-    const BodyId owner = bone->owner(p);
+    const auto strip_to = [&](double fraction, int& count) {
+      result.kept[i] = fraction;
+      ++count;
+    };
+    const std::optional<BodyId> owner = bone->owner(p);
+    if (!owner) {
+      strip_to(settings.resected, result.resected);
+      continue;
+    }
     bool near = false, on_maxilla = false, above_chin = false, on_chin = false;
     for (const CutSite& site : sites) {
-      const bool of_segment = holds(site.segments, owner);
+      const bool of_segment = holds(site.segments, *owner);
       const bool chin = site.osteotomy == "genioplasty";
       on_maxilla = on_maxilla || (of_segment && site.osteotomy == "le_fort_1");
       if (of_segment && chin) {
@@ -110,10 +126,6 @@ Stripping strip(const TissueModel& tissue, const Operated& operated, const Plan&
       above_chin = above_chin || (chin && distance < settings.freed_mm);
       near = near || distance < settings.reach_mm;
     }
-    const auto strip_to = [&](double fraction, int& count) {
-      result.kept[i] = fraction;
-      ++count;
-    };
     if (above_chin)
       strip_to(settings.above_chin, result.above_chin);
     else if (on_maxilla)

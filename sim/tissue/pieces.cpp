@@ -169,6 +169,8 @@ TissueContact contact_on_pieces(const TissueModel& uncut, std::span<const CutBon
           shift[i] = whole.shift[i];
       contact.obstacles.push_back(make_obstacle(contact, uncut.mesh->rest, piece, threads, shift));
     }
+    for (const auto& graft : cut->grafts)
+      contact.obstacles.push_back(make_new_obstacle(contact, uncut.mesh->rest, graft, threads));
   }
   return contact;
 }

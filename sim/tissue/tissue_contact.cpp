@@ -152,6 +152,21 @@ void guide_lips(const TissueContact& contact, const Obstacle& obstacle, std::spa
   }
 }
 
+/// A body's surface near the points, without their values.
+Obstacle obstacle_of(const TissueContact& contact, const Nodes& rest, const BodySurface& bone,
+                     int threads) {
+  Obstacle made;
+  made.body = bone.body;
+  made.extent = bounding_box(bone.mesh);
+  Box region;
+  for (const auto& point : contact.points) region.add(point.at(rest));
+  region.low.array() -= swept_mm;
+  region.high.array() += swept_mm;
+  made.surface =
+      std::make_shared<ContactObstacle>(bone.mesh, region, field_cache_folder(), threads);
+  return made;
+}
+
 }  // namespace
 
 void fit_to_rest(const TissueContact& contact, const Nodes& rest,
@@ -187,16 +202,21 @@ void fit_to_rest(const TissueContact& contact, const Nodes& rest,
 
 Obstacle make_obstacle(const TissueContact& contact, const Nodes& rest, const BodySurface& bone,
                        int threads, const std::vector<std::optional<Vector3d>>& shift) {
-  Obstacle made;
-  made.body = bone.body;
-  made.extent = bounding_box(bone.mesh);
-  Box region;
-  for (const auto& point : contact.points) region.add(point.at(rest));
-  region.low.array() -= swept_mm;
-  region.high.array() += swept_mm;
-  made.surface =
-      std::make_shared<ContactObstacle>(bone.mesh, region, field_cache_folder(), threads);
+  Obstacle made = obstacle_of(contact, rest, bone, threads);
   fit_to_rest(contact, rest, shift, made);
+  return made;
+}
+
+Obstacle make_new_obstacle(const TissueContact& contact, const Nodes& rest, const BodySurface& bone,
+                           int threads) {
+  Obstacle made = obstacle_of(contact, rest, bone, threads);
+  const std::size_t count = contact.points.size();
+  made.shift.assign(count, Vector3d::Zero());
+  made.allowance.assign(count, 0.0);
+  made.near_at_rest.assign(count, 0);
+  made.front_guided.assign(count, 0);
+  for (std::size_t i = 0; i < count; ++i)
+    if (contact.points[i].count > 1) made.allowance[i] = -min_gap_mm;
   return made;
 }
 

@@ -81,6 +81,10 @@ Obstacle make_obstacle(const TissueContact& contact, const Nodes& rest, const Bo
                        int threads = 1,
                        const std::vector<std::optional<Eigen::Vector3d>>& shift = {});
 
+/// A surface that is not there at rest: no overlap with it is allowed.
+Obstacle make_new_obstacle(const TissueContact& contact, const Nodes& rest, const BodySurface& bone,
+                           int threads = 1);
+
 /// Fills the obstacle's values of each point from its surface and the overlap at rest; the rest as
 /// in make_obstacle().
 void fit_to_rest(const TissueContact& contact, const Nodes& rest,
