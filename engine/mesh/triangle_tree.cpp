@@ -8,6 +8,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "engine/core/hash.h"
 #include "engine/core/infinity.h"
 
 namespace condyle {
@@ -70,6 +71,48 @@ double solid_angle(const std::array<Vector3d, 3>& t, const Vector3d& p) {
 
 double corner_angle(const Vector3d& at, const Vector3d& b, const Vector3d& c) {
   return std::atan2((b - at).cross(c - at).norm(), (b - at).dot(c - at));
+}
+
+/// For each vertex the first one at the same position.
+std::vector<int> ids_of_positions(const std::vector<Vector3d>& vertices) {
+  std::size_t slots = 16;
+  while (slots < 2 * vertices.size()) slots *= 2;
+  std::vector<int> first(slots, -1), id(vertices.size());
+  for (std::size_t v = 0; v < vertices.size(); ++v) {
+    const Vector3d p = vertices[v].array() + 0.0;  // -0 is 0
+    std::size_t slot = hash_bytes(p.data(), 3 * sizeof(double)) & (slots - 1);
+    while (first[slot] >= 0 && vertices[static_cast<std::size_t>(first[slot])] != p)
+      slot = (slot + 1) & (slots - 1);
+    if (first[slot] < 0) first[slot] = static_cast<int>(v);
+    id[v] = first[slot];
+  }
+  return id;
+}
+
+/// A triangle's side between the vertices `low` and `high`.
+struct Side {
+  int low, high, slot, edge;
+};
+
+/// Stable. `count`: of the vertices.
+void sort_by_low_and_high(std::vector<Side>& sides, std::size_t count) {
+  std::vector<int> end(count + 1, 0);
+  for (const Side& side : sides) ++end[static_cast<std::size_t>(side.low) + 1];
+  std::partial_sum(end.begin(), end.end(), end.begin());
+  std::vector<Side> sorted(sides.size());
+  std::vector<int> next(end.begin(), end.end() - 1);
+  for (const Side& side : sides) sorted[next[side.low]++] = side;
+  constexpr std::ptrdiff_t few = 32;
+  const auto less = [](const Side& x, const Side& y) { return x.high < y.high; };
+  for (std::size_t v = 0; v < count; ++v) {
+    const auto from = sorted.begin() + end[v], to = sorted.begin() + end[v + 1];
+    if (to - from > few) {
+      std::stable_sort(from, to, less);
+      continue;
+    }
+    for (auto i = from; i != to; ++i) std::rotate(std::upper_bound(from, i, *i, less), i, i + 1);
+  }
+  sides = std::move(sorted);
 }
 
 /// Entry of the ray into the box, infinity when it misses or the box lies beyond `limit`.
@@ -156,20 +199,24 @@ void TriangleTree::make_face_normals() {
 int TriangleTree::build(std::vector<int>& order, const std::vector<Vector3d>& centers, int first,
                         int last, const TriMesh& mesh) {
   const int index = static_cast<int>(nodes_.size());
-  Node node{Vector3d::Constant(infinity), Vector3d::Constant(-infinity), first, last - first};
-  Vector3d low = node.low, high = node.high;
+  nodes_.push_back(
+      {Vector3d::Constant(infinity), Vector3d::Constant(-infinity), first, last - first});
+  if (last - first <= leaf_size) {
+    Node& leaf = nodes_.back();
+    for (int i = first; i < last; ++i)
+      for (int k = 0; k < 3; ++k) {
+        const Vector3d& v = mesh.vertices[mesh.triangles[order[i]][k]];
+        leaf.low = leaf.low.cwiseMin(v);
+        leaf.high = leaf.high.cwiseMax(v);
+      }
+    return index;
+  }
+
+  Vector3d low = Vector3d::Constant(infinity), high = -low;
   for (int i = first; i < last; ++i) {
-    for (int k = 0; k < 3; ++k) {
-      const Vector3d& v = mesh.vertices[mesh.triangles[order[i]][k]];
-      node.low = node.low.cwiseMin(v);
-      node.high = node.high.cwiseMax(v);
-    }
     low = low.cwiseMin(centers[order[i]]);
     high = high.cwiseMax(centers[order[i]]);
   }
-  nodes_.push_back(node);
-  if (last - first <= leaf_size) return index;
-
   int axis = 0;
   (high - low).maxCoeff(&axis);
   const int middle = first + (last - first) / 2;
@@ -178,31 +225,21 @@ int TriangleTree::build(std::vector<int>& order, const std::vector<Vector3d>& ce
                      const double x = centers[a][axis], y = centers[b][axis];
                      return x < y || (x == y && a < b);
                    });
-  build(order, centers, first, middle, mesh);
+  const int left = build(order, centers, first, middle, mesh);
   const int right = build(order, centers, middle, last, mesh);
-  nodes_[index].first = right;
-  nodes_[index].count = 0;
+  Node& node = nodes_[index];
+  node.low = nodes_[left].low.cwiseMin(nodes_[right].low);
+  node.high = nodes_[left].high.cwiseMax(nodes_[right].high);
+  node.first = right;
+  node.count = 0;
   return index;
 }
 
 void TriangleTree::make_pseudonormals(const TriMesh& mesh) {
   // One id per position: the neighbours of an edge are found even where the file repeats vertices.
-  std::vector<int> by_place(mesh.vertices.size()), id(mesh.vertices.size());
-  std::iota(by_place.begin(), by_place.end(), 0);
-  const auto less = [&](int a, int b) {
-    const Vector3d &u = mesh.vertices[a], &v = mesh.vertices[b];
-    return std::lexicographical_compare(u.data(), u.data() + 3, v.data(), v.data() + 3);
-  };
-  std::sort(by_place.begin(), by_place.end(), less);
-  for (std::size_t i = 0, n = 0; i < by_place.size(); ++i) {
-    if (i > 0 && less(by_place[i - 1], by_place[i])) ++n;
-    id[by_place[i]] = static_cast<int>(n);
-  }
+  const std::vector<int> id = ids_of_positions(mesh.vertices);
 
   std::vector<Vector3d> vertex_normal(mesh.vertices.size(), Vector3d::Zero());
-  struct Side {
-    int low, high, slot, edge;
-  };
   std::vector<Side> sides;
   sides.reserve(3 * corners_.size());
   // In the mesh's own order, so that the sums do not depend on how the tree was split.
@@ -216,9 +253,7 @@ void TriangleTree::make_pseudonormals(const TriMesh& mesh) {
       sides.push_back({std::min(a, b), std::max(a, b), slot_[t], k});
     }
   }
-  std::stable_sort(sides.begin(), sides.end(), [](const Side& x, const Side& y) {
-    return std::pair(x.low, x.high) < std::pair(y.low, y.high);
-  });
+  sort_by_low_and_high(sides, mesh.vertices.size());
   edge_normals_.resize(corners_.size());
   corner_normals_.resize(corners_.size());
   for (std::size_t i = 0; i < sides.size();) {
