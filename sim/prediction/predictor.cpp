@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <future>
 #include <string>
 #include <utility>
 
@@ -85,9 +86,13 @@ const Operated& Predictor::prepare(const Plan& plan, const Progress& progress) {
     return operated_;
   }
   plan_.reset();
-  cuts_ = apply_cuts(patient_, plan);
-  operated_ = with_moves(cuts_, plan);
+  const bool beside = settings_.threads > 1 && !whole_;
+  std::future<Operated> cuts = std::async(beside ? std::launch::async : std::launch::deferred,
+                                          [&] { return apply_cuts(patient_, plan); });
+  if (!beside) cuts.wait();
   build_whole(progress);
+  cuts_ = cuts.get();
+  operated_ = with_moves(cuts_, plan);
   tissue_ =
       operated_tissue(uncut_, whole_, operated_, plan, settings_.stripping, settings_.threads);
   plan_ = plan;

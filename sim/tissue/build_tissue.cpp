@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <future>
 #include <memory>
 #include <tuple>
 #include <utility>
@@ -202,10 +203,14 @@ std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const Tissu
   mesh->runs = std::make_shared<const ElementBatches>(mesh->elements);
 
   report(progress, "soft tissue: opening path", 0.6);
+  std::future<std::shared_ptr<const FaceDisplay>> display =
+      std::async(settings.threads > 1 ? std::launch::async : std::launch::deferred, [&] {
+        return make_face_display(*mesh, build.region, build.skin, build.columns, build.side,
+                                 face->mesh);
+      });
   make_opening_path(build.anatomy.condyles, *model, settings.threads);
   report(progress, "soft tissue: displayed face", 0.8);
-  model->display =
-      make_face_display(*mesh, build.region, build.skin, build.columns, build.side, face->mesh);
+  model->display = display.get();
 
   summary.nodes = mesh->elements.node_count;
   summary.springs =
