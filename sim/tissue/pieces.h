@@ -15,8 +15,8 @@ struct CutBone {
   TriMesh surface;                  // of the uncut bone with its teeth, mm, at rest
   std::vector<BodyId> owner;        // of each triangle of `surface`: the piece it belongs to
   std::vector<BodySurface> pieces;  // with their cut faces, at their poses in the uncut bone
-  std::vector<char> resected;       // of each triangle: its bone was removed; empty where none was
-  std::vector<BodySurface> grafts;  // bone that tissue may touch, where it lay in none before
+  std::vector<char> resected = {};  // of each triangle: its bone was removed; empty where none was
+  std::vector<BodySurface> grafts = {};  // bone that tissue may touch, where it lay in none before
   /// Fraction of the nose that the septum holds to the piece with the body of the whole bone.
   double septum = 0;
 };
