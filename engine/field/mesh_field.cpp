@@ -55,19 +55,44 @@ struct RasterTriangle {
 /// First and last sample of an even axis within [low, high].
 struct SampleRange {
   int first, last;
-  SampleRange(const GridAxis& axis, double low, double high) {
-    const double per_step = 1 / (axis[1] - axis[0]);
-    first = std::max(0, static_cast<int>(std::ceil((low - axis[0]) * per_step - 1e-9)));
-    last = std::min(static_cast<int>(axis.size()) - 1,
-                    static_cast<int>(std::floor((high - axis[0]) * per_step + 1e-9)));
+};
+
+class EvenAxis {
+ public:
+  explicit EvenAxis(const GridAxis& axis)
+      : start_(axis[0]),
+        per_step_(1 / (axis[1] - axis[0])),
+        count_(static_cast<double>(axis.size())) {}
+
+  SampleRange within(double low, double high) const {
+    const double from = std::min((low - start_) * per_step_ - 1e-9, count_);
+    const double to = std::min((high - start_) * per_step_ + 1e-9, count_ - 1);
+    const int down = static_cast<int>(std::max(from, 0.0));  // std::ceil is a call
+    return {from > down ? down + 1 : down, to < 0 ? -1 : static_cast<int>(to)};
   }
+
+ private:
+  double start_, per_step_, count_;
+};
+
+/// Samples whose values are being lowered.
+struct Raster {
+  SampledField& field;
+  double band;
+  EvenAxis along_x{field.axes[0]}, along_y{field.axes[1]}, along_z{field.axes[2]};
 };
 
 /// Lowers the squared distances of one layer of samples, x = axes[0][i], to those of a triangle.
-void raster_distance(const RasterTriangle& triangle, double band, int i, SampledField& field) {
+void raster_distance(const RasterTriangle& triangle, int i, const Raster& raster) {
+  SampledField& field = raster.field;
+  const double band = raster.band;
+  if (triangle.low.z() - band > field.axes[2].back() ||
+      triangle.high.z() + band < field.axes[2].front())
+    return;
   const double x = field.axes[0][static_cast<std::size_t>(i)];
   const double beside = std::max({0.0, triangle.low.x() - x, x - triangle.high.x()});
-  const SampleRange rows(field.axes[1], triangle.low.y() - band, triangle.high.y() + band);
+  const SampleRange rows =
+      raster.along_y.within(triangle.low.y() - band, triangle.high.y() + band);
   for (int j = rows.first; j <= rows.last; ++j) {
     const double y = field.axes[1][static_cast<std::size_t>(j)];
     const double behind = std::max({0.0, triangle.low.y() - y, y - triangle.high.y()});
@@ -83,18 +108,19 @@ void raster_distance(const RasterTriangle& triangle, double band, int i, Sampled
       low = std::max(low, middle - band / std::abs(n));
       high = std::min(high, middle + band / std::abs(n));
     }
-    const SampleRange samples(field.axes[2], low, high);
+    const SampleRange samples = raster.along_z.within(low, high);
     float* row = &field.values[field.index(i, j, 0)];
     const double base = triangle.normal.x() * (x - triangle.a.x()) +
                         triangle.normal.y() * (y - triangle.a.y()) -
                         triangle.normal.z() * triangle.a.z();
+    const double outside = beside * beside + behind * behind;
     for (int k = samples.first; k <= samples.last; ++k) {
-      // Its plane is farther away than another triangle.
-      const double height = base + triangle.normal.z() * field.axes[2][static_cast<std::size_t>(k)];
-      if (height * height >= row[k]) continue;
-      const double squared =
-          triangle.squared_distance({x, y, field.axes[2][static_cast<std::size_t>(k)]});
-      row[k] = std::min(row[k], static_cast<float>(squared));
+      // Its box or its plane is farther away than another triangle.
+      const double z = field.axes[2][static_cast<std::size_t>(k)];
+      const double off = std::max({0.0, triangle.low.z() - z, z - triangle.high.z()});
+      const double height = base + triangle.normal.z() * z;
+      if (std::max(outside + off * off, height * height) >= row[k]) continue;
+      row[k] = std::min(row[k], static_cast<float>(triangle.squared_distance({x, y, z})));
     }
   }
 }
@@ -118,8 +144,12 @@ struct Crossing {
 /// Gives the samples of one layer their signs; their values are squared distances.
 class LayerSigns {
  public:
-  LayerSigns(const TriMesh& mesh, SampledField& field, int i, double band)
-      : mesh_(mesh), field_(field), i_(i), band_(band), crossings_(field.axes[1].size()) {}
+  LayerSigns(const TriMesh& mesh, const Raster& raster, int i)
+      : mesh_(mesh),
+        raster_(raster),
+        field_(raster.field),
+        i_(i),
+        crossings_(field_.axes[1].size()) {}
 
   void add(int t) {
     const auto& v = mesh_.triangles[static_cast<std::size_t>(t)];
@@ -127,8 +157,8 @@ class LayerSigns {
                    &b = mesh_.vertices[static_cast<std::size_t>(v[1])],
                    &c = mesh_.vertices[static_cast<std::size_t>(v[2])];
     const double x = field_.axes[0][static_cast<std::size_t>(i_)];
-    const SampleRange rows(field_.axes[1], std::min({a.y(), b.y(), c.y()}),
-                           std::max({a.y(), b.y(), c.y()}));
+    const SampleRange rows = raster_.along_y.within(std::min({a.y(), b.y(), c.y()}),
+                                                    std::max({a.y(), b.y(), c.y()}));
     for (int j = rows.first; j <= rows.last; ++j) {
       const double y = field_.axes[1][static_cast<std::size_t>(j)];
       const bool left = is_left(mesh_, v[0], v[1], x, y);
@@ -153,7 +183,7 @@ class LayerSigns {
       for (std::size_t k = 0; k < field_.axes[2].size(); ++k) {
         for (; next < line.size() && line[next].z <= field_.axes[2][k]; ++next)
           winding -= line[next].sense;
-        const auto distance = static_cast<float>(std::min(std::sqrt(double(row[k])), band_));
+        const auto distance = static_cast<float>(std::min(std::sqrt(double(row[k])), raster_.band));
         row[k] = winding > 0 ? -distance : distance;
       }
     }
@@ -161,19 +191,24 @@ class LayerSigns {
 
  private:
   const TriMesh& mesh_;
+  const Raster& raster_;
   SampledField& field_;
   int i_;
-  double band_;
   std::vector<std::vector<Crossing>> crossings_;
 };
 
-/// Triangles by the layers of samples that they reach.
+/// Triangles by the layers of samples that they reach. Those below the samples cross lines along z.
 std::vector<std::vector<int>> by_layer(const std::vector<RasterTriangle>& triangles,
-                                       const SampledField& field, double band) {
+                                       const Raster& raster) {
+  const SampledField& field = raster.field;
+  const GridAxis &y = field.axes[1], &z = field.axes[2];
+  const double band = raster.band;
   std::vector<std::vector<int>> layers(field.axes[0].size());
   for (std::size_t t = 0; t < triangles.size(); ++t) {
-    const SampleRange range(field.axes[0], triangles[t].low.x() - band,
-                            triangles[t].high.x() + band);
+    const Vector3d &low = triangles[t].low, &high = triangles[t].high;
+    if (low.y() - band > y.back() || high.y() + band < y.front() || low.z() - band > z.back())
+      continue;
+    const SampleRange range = raster.along_x.within(low.x() - band, high.x() + band);
     for (int i = range.first; i <= range.last; ++i)
       layers[static_cast<std::size_t>(i)].push_back(static_cast<int>(t));
   }
@@ -200,13 +235,14 @@ SampledField mesh_field(const TriMesh& mesh, const std::array<GridAxis, 3>& axes
     triangles.emplace_back(mesh.vertices[static_cast<std::size_t>(t[0])],
                            mesh.vertices[static_cast<std::size_t>(t[1])],
                            mesh.vertices[static_cast<std::size_t>(t[2])]);
-  const auto layers = by_layer(triangles, field, band_mm);
+  const Raster raster{field, band_mm};
+  const auto layers = by_layer(triangles, raster);
   parallel_for(axes[0].size(), threads, [&](std::size_t layer) {
     const int i = static_cast<int>(layer);
-    LayerSigns signs(mesh, field, i, band_mm);
+    LayerSigns signs(mesh, raster, i);
     for (const int t : layers[layer]) {
       const RasterTriangle& triangle = triangles[static_cast<std::size_t>(t)];
-      raster_distance(triangle, band_mm, i, field);
+      raster_distance(triangle, i, raster);
       if (triangle.low.x() <= axes[0][layer] && axes[0][layer] <= triangle.high.x()) signs.add(t);
     }
     signs.finish();
@@ -292,7 +328,7 @@ void remove_thin_within(SampledField& field, const Box& box, double radius_mm, d
   std::array<int, 3> first;
   for (int a = 0; a < 3; ++a) {
     const GridAxis& axis = field.axes[static_cast<std::size_t>(a)];
-    const SampleRange range(axis, box.low[a] - margin, box.high[a] + margin);
+    const SampleRange range = EvenAxis(axis).within(box.low[a] - margin, box.high[a] + margin);
     if (range.last <= range.first) return;
     first[static_cast<std::size_t>(a)] = range.first;
     part.axes[static_cast<std::size_t>(a)].assign(axis.begin() + range.first,
