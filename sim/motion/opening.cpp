@@ -66,18 +66,35 @@ bool is_free(const ContactSet& now, const ContactSet& rest) {
   return true;
 }
 
-/// Whether the gap of a condyle to its fossa is below `min_ratio` times the gap at rest, which
-/// would crush the disc.
-bool crushes(const JawJoints& joints, const Pose& X_CM, double min_ratio, TrianglePair& left,
+/// Least gaps of the condyles to their fossae, mm.
+struct DiscLimits {
+  double left = 0, right = 0;
+
+  DiscLimits(const JawJoints& joints, const MotionParameters& parameters) {
+    if (!joints.surfaces()) return;
+    // A known joint may thin its disc.
+    const double fraction = joints.well_known() ? 0.3 : 0.7;
+    const auto least = [&](JawSide side) {
+      const double rest = joints.surfaces()->rest_gap_mm(side);
+      return fraction * std::min({rest, parameters.disc_gap_mm.value_or(rest),
+                                  parameters.disc_gap_front_mm.value_or(rest)});
+    };
+    left = least(JawSide::left);
+    right = least(JawSide::right);
+  }
+};
+
+/// Whether a condyle comes so near to its fossa that it would crush the disc.
+bool crushes(const JawJoints& joints, const Pose& X_CM, const DiscLimits& least, TrianglePair& left,
              TrianglePair& right) {
   if (!joints.surfaces()) return false;
   const JointSurfaces& joint = *joints.surfaces();
-  return joint.gap_mm(JawSide::left, X_CM, left) < min_ratio * joint.rest_gap_mm(JawSide::left) ||
-         joint.gap_mm(JawSide::right, X_CM, right) < min_ratio * joint.rest_gap_mm(JawSide::right);
+  return joint.gap_mm(JawSide::left, X_CM, left) < least.left ||
+         joint.gap_mm(JawSide::right, X_CM, right) < least.right;
 }
 
 /// The largest rotation up to `end` that is reached without contact of bone.
-double free_rotation(const OpeningPath& path, double end, double min_gap,
+double free_rotation(const OpeningPath& path, double end, const DiscLimits& disc,
                      const ContactModel& contacts, const Progress& progress) {
   constexpr int steps = 120;
   ContactSet last = contacts.at_rest();
@@ -86,7 +103,7 @@ double free_rotation(const OpeningPath& path, double end, double min_gap,
     report(progress, "searching the opening that the bones permit",
            static_cast<double>(i - 1) / steps);
     const Pose X_CM = path.joints.pose(path.inputs(end * i / steps));
-    if (crushes(path.joints, X_CM, min_gap, left, right)) return end * (i - 1) / steps;
+    if (crushes(path.joints, X_CM, disc, left, right)) return end * (i - 1) / steps;
     last = contacts.find(BodyPoses(X_CM), &last, 2);
     if (!is_free(last, contacts.at_rest())) return end * (i - 1) / steps;
   }
@@ -137,8 +154,7 @@ OpeningLimits opening_limits(const JawJoints& joints, const ContactModel& contac
                             ? Target{true, *asked}
                             : Target{false, joints.well_known() ? known_joint_displacement_mm
                                                                 : estimated_joint_displacement_mm};
-  // A prescribed thinning of the gap is allowed.
-  const double min_gap = joints.well_known() ? 0.3 : 0.7;
+  const DiscLimits disc(joints, parameters);
   // The first coupling that reaches the target freely, else the one that opens farthest.
   struct Choice {
     Coupling coupling;
@@ -148,7 +164,7 @@ OpeningLimits opening_limits(const JawJoints& joints, const ContactModel& contac
   for (const Coupling& coupling : couplings_to_try(parameters, joints.closed_theta())) {
     const OpeningPath path{joints, coupling};
     Choice choice{coupling, path.theta_for(target)};
-    choice.free_end = free_rotation(path, choice.end, min_gap, contacts, progress);
+    choice.free_end = free_rotation(path, choice.end, disc, contacts, progress);
     choice.free_mm = path.travel_mm(choice.free_end, target);
     if (!best || choice.free_mm > best->free_mm + 1e-9) best = choice;
     if (choice.free_end == choice.end && choice.free_mm > target.mm - 1e-6) break;

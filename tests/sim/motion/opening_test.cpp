@@ -47,6 +47,16 @@ TEST(Opening, OpensToItsTargetAndClosesAgain) {
   }
 }
 
+/// The thinning of a disc that the case states is no crushing.
+TEST(Opening, AThinDiscInFrontOpensAsFarAsOneOfEvenThickness) {
+  const Case patient = jaw_in_fossae();
+  const double even = largest_opening(opening_of(patient), patient);
+  MotionSettings thin;
+  thin.parameters.disc_gap_front_mm = 1.0;  // 2 mm at rest
+  EXPECT_NEAR(largest_opening(opening_of(patient, thin), patient), even, 1);
+  EXPECT_GT(even, 35);
+}
+
 TEST(Opening, IsCancelledByItsProgress) {
   const Case patient = free_jaw();
   int reports = 0;
