@@ -18,7 +18,7 @@ namespace {
 /// The bone of a body's part that was there before the cuts.
 TriMesh uncut_surface(const Part& part, const SurfaceOrigin* origin) {
   TriMesh mesh = part.mesh;
-  if (!origin) return mesh;
+  if (!origin || origin->triangle.size() != mesh.triangles.size()) return mesh;
   std::vector<Eigen::Vector3i> kept;
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i)
     if (origin->triangle[i] >= 0) kept.push_back(mesh.triangles[i]);
@@ -118,7 +118,7 @@ OperatedTissue operated_tissue(const Case& uncut, const std::shared_ptr<const Ti
     std::vector<const Resection*> resections;
     for (const Resection& resection : operated.resections)
       if (parts.contains(resection.origin.part)) resections.push_back(&resection);
-    if (bodies.size() < 2 && resections.empty()) continue;
+    if (bodies.empty() || (bodies.size() < 2 && resections.empty())) continue;
     CutBone cut;
     cut.whole = whole;
     cut.septum = whole == uncut.jaw.upper_arch ? stripping.septum : 0;
