@@ -66,6 +66,13 @@ void add_bench(Commands& commands) {
   import.add_option("--only", options->part,
                     "Measure one scan (plain, \"flat voxels\", blurred, fillings, table, \"dark "
                     "marrow\", \"teeth touch\", turned) or the time; default all");
+  CLI::App& convergence =
+      add("convergence", "The displayed face of tissues of several sizes, beside the finest",
+          "condyle bench convergence --sizes 1000 2000 --json", run_bench_convergence);
+  add_patient(convergence, *options);
+  in_range(convergence.add_option("--sizes", options->study_sizes,
+                                  "Nodes; default 1000 2000 4000 8000 16000 32000"),
+           400, 200000);
   CLI::App& mesh = add("mesh", "The decimators on the built-in patient's surfaces",
                        "condyle bench mesh --json", run_bench_mesh);
   in_range(mesh.add_option("--repeats", options->repeats, "Runs to measure; default 3"), 1, 1000);

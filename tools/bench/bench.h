@@ -13,7 +13,8 @@ struct BenchOptions {
   int heads = 10;                                   // of each kind of scan
   int repeats = 3;                                  // whole openings
   std::vector<int> sizes = {10000, 50000, 100000};  // nodes of larger tissues
-  std::string part;                                 // of the measurements; empty: all
+  std::vector<int> study_sizes = {1000, 2000, 4000, 8000, 16000, 32000};  // nodes compared
+  std::string part;  // of the measurements; empty: all
 };
 
 // Each returns the program's exit code.
@@ -28,6 +29,7 @@ int run_bench_drag(const BenchOptions& options, const CommonOptions& common);
 int run_bench_appliances(const BenchOptions& options, const CommonOptions& common);
 int run_bench_import(const BenchOptions& options, const CommonOptions& common);
 int run_bench_mesh(const BenchOptions& options, const CommonOptions& common);
+int run_bench_convergence(const BenchOptions& options, const CommonOptions& common);
 int run_bench_landmarks(const BenchOptions& options, const CommonOptions& common);
 
 }  // namespace condyle
