@@ -91,8 +91,7 @@ void raster_distance(const RasterTriangle& triangle, int i, const Raster& raster
     return;
   const double x = field.axes[0][static_cast<std::size_t>(i)];
   const double beside = std::max({0.0, triangle.low.x() - x, x - triangle.high.x()});
-  const SampleRange rows =
-      raster.along_y.within(triangle.low.y() - band, triangle.high.y() + band);
+  const SampleRange rows = raster.along_y.within(triangle.low.y() - band, triangle.high.y() + band);
   for (int j = rows.first; j <= rows.last; ++j) {
     const double y = field.axes[1][static_cast<std::size_t>(j)];
     const double behind = std::max({0.0, triangle.low.y() - y, y - triangle.high.y()});
@@ -157,8 +156,8 @@ class LayerSigns {
                    &b = mesh_.vertices[static_cast<std::size_t>(v[1])],
                    &c = mesh_.vertices[static_cast<std::size_t>(v[2])];
     const double x = field_.axes[0][static_cast<std::size_t>(i_)];
-    const SampleRange rows = raster_.along_y.within(std::min({a.y(), b.y(), c.y()}),
-                                                    std::max({a.y(), b.y(), c.y()}));
+    const SampleRange rows =
+        raster_.along_y.within(std::min({a.y(), b.y(), c.y()}), std::max({a.y(), b.y(), c.y()}));
     for (int j = rows.first; j <= rows.last; ++j) {
       const double y = field_.axes[1][static_cast<std::size_t>(j)];
       const bool left = is_left(mesh_, v[0], v[1], x, y);
