@@ -215,7 +215,7 @@ TEST_F(RecordingFormats, ProbesHaveAHeaderOfTwoLines) {
 std::string trc(const std::vector<Vector3d>& markers, const std::vector<Vector3d>& head,
                 double noise, int hide_from = 99, int hide_to = 99) {
   std::mt19937 random(7);
-  std::normal_distribution<double> normal(0, noise);
+  std::normal_distribution<double> normal;  // of unit variance: there may be no noise
   const Pose lab{Eigen::Quaterniond(Eigen::AngleAxisd(0.2, Vector3d(0, 1, 1).normalized())),
                  Vector3d(300, 100, -50)};
   std::string text = "PathFileType\t4\t(X/Y/Z)\tjaw.trc\nDataRate\tNumFrames\tUnits\n10\t11\tmm\n";
@@ -235,8 +235,8 @@ std::string trc(const std::vector<Vector3d>& markers, const std::vector<Vector3d
       if (m == 0 && k >= hide_from && k <= hide_to)
         text += "\t\t\t";
       else
-        text += fmt::format("\t{:.12g}\t{:.12g}\t{:.12g}", p.x() + normal(random),
-                            p.y() + normal(random), p.z() + normal(random));
+        text += fmt::format("\t{:.12g}\t{:.12g}\t{:.12g}", p.x() + noise * normal(random),
+                            p.y() + noise * normal(random), p.z() + noise * normal(random));
     }
     text += "\n";
   }
