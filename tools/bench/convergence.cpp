@@ -67,7 +67,8 @@ class StudyMotion {
     for (const double mm : {5.0, 15.0, 25.0, 40.0})
       if (mm < widest - 1) go(0, widest_s_, mm, "opening", poses);
     go(0, widest_s_, widest, "full opening", poses);
-    go(opening_.duration_s, widest_s_, 25, "closing", poses);
+    constexpr double closing_mm = 25;
+    if (closing_mm < widest) go(opening_.duration_s, widest_s_, closing_mm, "closing", poses);
     return poses;
   }
 
