@@ -49,6 +49,11 @@ class DistanceField {
   DistanceField(const TriMesh& mesh, const FieldSettings& settings, int threads = 1,
                 const Progress& progress = {});
 
+  /// The field of a piece of a mesh that was cut, on the grid and with the settings of the uncut
+  /// mesh's field. What the cut left as it was is copied, bit for bit.
+  DistanceField(const TriMesh& piece, const TriMesh& uncut, const DistanceField& uncut_field,
+                int threads = 1, const Progress& progress = {});
+
   FieldSample at(const Eigen::Vector3d& p) const;
 
   /// The same query in two parts, for callers that need few gradients.

@@ -3,10 +3,13 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <vector>
 
 #include "engine/collide/distance_field.h"
 #include "engine/collide/field_face.h"
 #include "engine/collide/shells.h"
+#include "engine/collide/unchanged_faces.h"
 #include "engine/core/infinity.h"
 #include "engine/core/parallel.h"
 #include "engine/mesh/triangle_tree.h"
@@ -18,10 +21,14 @@ using Eigen::Vector3d;
 
 using Points = std::array<Vector3d, 4>;
 
+/// Edge of the largest cubes, in bricks, that are copied as a whole from another field.
+constexpr int largest_copied = 4;
+
 /// A cube of bricks with the faces that can be nearest to any of its points, grouped by shell.
 struct Cube {
   int x = 0, y = 0, z = 0;  // in bricks
   std::vector<int> faces;
+  bool unchanged = false;  // all its bricks are those of the uncut mesh's field
 };
 
 /// The nearest distances of a point.
@@ -58,6 +65,19 @@ class FieldBuilder {
     rounding_mm_ = static_cast<float>(1e-6 * box.size().norm());
     planes_.reserve(faces_.size());
     for (const FieldFace& face : faces_) planes_.emplace_back(face, center_);
+  }
+
+  /// Bricks are copied from the field of the uncut mesh where the piece has no other faces near.
+  void copy_from(const DistanceField& field, const TriMesh& uncut) {
+    const std::vector<Shell> shells = solid_shells(uncut);
+    const auto closed = [](const Shell& shell) { return shell.closed; };
+    if (!std::all_of(shells.begin(), shells.end(), closed) ||
+        !std::all_of(shells_.begin(), shells_.end(), closed))
+      return;  // beyond a rim the side may differ
+    uncut_ = &field;
+    const double diagonal =
+        largest_copied * DistanceField::cells * field_.settings_.spacing_mm * std::sqrt(3.0);
+    unchanged_.emplace(shells_, faces_, shells, 2 * field_.settings_.band_mm + 3 * diagonal);
   }
 
   void run(int threads, const Progress& progress) {
@@ -200,8 +220,69 @@ class FieldBuilder {
     return result;
   }
 
+  const DistanceField::Brick* uncut_brick(int x, int y, int z) const {
+    if (!uncut_ || x >= field_.size_[0] || y >= field_.size_[1] || z >= field_.size_[2])
+      return nullptr;
+    const std::int32_t index = uncut_->brick_[uncut_->slot(x, y, z)];
+    return index < 0 ? nullptr : &uncut_->bricks_[static_cast<std::size_t>(index)];
+  }
+
+  /// Whether the field within a radius (mm) of a point is that of the uncut mesh, of which one
+  /// sample there is given. The distance to a union of closed shells changes by at most the
+  /// displacement: where both are the same at one place, and the faces in which the meshes differ
+  /// are this far away, these are nearest nowhere within the radius.
+  bool is_unchanged(const std::vector<int>& faces, const Vector3d& p, double radius,
+                    double distance, const Vector3d& place, float uncut) const {
+    const double reach = std::abs(distance) + 2 * radius + 1e-3;
+    Vector3d barycentric;
+    for (const int face : faces)
+      if (!unchanged_->contains(face) && nearest(faces_[face], p, barycentric) <= reach * reach)
+        return false;
+    if (!unchanged_->are_missing_beyond(p, reach)) return false;
+    return static_cast<float>(survey(faces, {place, place, place, place}, {}, nullptr)[0].value) ==
+           uncut;
+  }
+
+  /// The same for a cube of several bricks, one of which the uncut mesh's field has.
+  bool is_unchanged(const Cube& cube, int edge, const Vector3d& center, double radius,
+                    double distance) const {
+    constexpr int half = DistanceField::cells / 2;
+    for (int i = 0; i < edge * edge * edge; ++i) {
+      Cube first;
+      first.x = cube.x + i % edge;
+      first.y = cube.y + i / edge % edge;
+      first.z = cube.z + i / (edge * edge);
+      if (const auto* brick = uncut_brick(first.x, first.y, first.z))
+        return is_unchanged(cube.faces, center, radius, distance, place_of(first, half, half, half),
+                            brick->value[sample_index(half, half, half)]);
+    }
+    return false;
+  }
+
+  void copy_children(const Cube& parent, int edge, bool upper, std::vector<Cube>& reached) {
+    for (int k = 0; k < 4; ++k) {
+      Cube child;
+      child.x = parent.x + (k & 1 ? edge : 0);
+      child.y = parent.y + (k & 2 ? edge : 0);
+      child.z = parent.z + (upper ? edge : 0);
+      child.unchanged = true;
+      if (edge == 1) {
+        if (child.x >= field_.size_[0] || child.y >= field_.size_[1] || child.z >= field_.size_[2])
+          continue;
+        const std::size_t place = field_.slot(child.x, child.y, child.z);
+        field_.bound_[place] = uncut_->bound_[place];
+        if (!uncut_brick(child.x, child.y, child.z)) continue;
+      }
+      reached.push_back(std::move(child));
+    }
+  }
+
   /// Four children of a cube, as far as the band reaches them.
   void narrow(const Cube& parent, int edge, bool upper, std::vector<Cube>& reached) {
+    if (parent.unchanged) {
+      copy_children(parent, edge, upper, reached);
+      return;
+    }
     const double mm = DistanceField::cells * field_.settings_.spacing_mm;
     const double radius = 0.5 * edge * mm * std::sqrt(3.0) * (1 + 1e-12);
     std::array<Cube, 4> child;
@@ -218,6 +299,11 @@ class FieldBuilder {
     for (int k = 0; k < 4; ++k)
       if (keep(child[k], edge, center[k], radius, found[k])) {
         child[k].faces = std::move(kept[k]);
+        if (uncut_ && edge > 1 && edge <= largest_copied &&
+            is_unchanged(child[k], edge, center[k], radius, found[k].closed)) {
+          child[k].unchanged = true;
+          child[k].faces.clear();
+        }
         reached.push_back(std::move(child[k]));
       }
   }
@@ -261,10 +347,41 @@ class FieldBuilder {
     int low[3], high[3];  // samples, inclusive
   };
 
+  static std::size_t sample_index(int x, int y, int z) {
+    return static_cast<std::size_t>(x + DistanceField::corners * (y + DistanceField::corners * z));
+  }
+
   void fill(const Cube& cube, DistanceField::Brick& brick) const {
+    const DistanceField::Brick* uncut = uncut_brick(cube.x, cube.y, cube.z);
+    if (cube.unchanged) {
+      brick = *uncut;
+      return;
+    }
     constexpr int last = DistanceField::cells;
-    fill_block({{0, 0, 0}, {last, last, last}}, cube, cube.faces, brick);
+    fill_block({{0, 0, 0}, {last, last, last}}, cube, cube.faces, uncut, brick);
     DistanceField::mark_unknown(brick, field_.settings_.spacing_mm);
+  }
+
+  /// Copies the samples of a block where they are those of the uncut mesh's field.
+  bool copy_block(const Block& block, const Cube& cube, const std::vector<int>& faces,
+                  const DistanceField::Brick& uncut, DistanceField::Brick& brick) const {
+    int at[3];
+    double radius2 = 0;
+    for (int k = 0; k < 3; ++k) {
+      at[k] = (block.low[k] + block.high[k]) / 2;
+      const double wide = field_.settings_.spacing_mm * (block.high[k] - at[k]);
+      radius2 += wide * wide;
+    }
+    const float value = uncut.value[sample_index(at[0], at[1], at[2])];
+    const Vector3d p = place_of(cube, at[0], at[1], at[2]);
+    if (!is_unchanged(faces, p, std::sqrt(radius2), value, p, value)) return false;
+    for (int z = block.low[2]; z <= block.high[2]; ++z)
+      for (int y = block.low[1]; y <= block.high[1]; ++y)
+        for (int x = block.low[0]; x <= block.high[0]; ++x) {
+          const std::size_t i = sample_index(x, y, z);
+          brick.value[i] = uncut.value[i];
+        }
+    return true;
   }
 
   Vector3d place_of(const Cube& cube, double x, double y, double z) const {
@@ -274,8 +391,10 @@ class FieldBuilder {
                                                   cube.z * DistanceField::cells + z);
   }
 
+  /// `uncut`: the brick of the uncut mesh's field, where there is one.
   void fill_block(const Block& block, const Cube& cube, const std::vector<int>& faces,
-                  DistanceField::Brick& brick) const {
+                  const DistanceField::Brick* uncut, DistanceField::Brick& brick) const {
+    if (uncut && copy_block(block, cube, faces, *uncut, brick)) return;
     const int widest = std::max(
         {block.high[0] - block.low[0], block.high[1] - block.low[1], block.high[2] - block.low[2]});
     if (widest <= 2) {
@@ -305,7 +424,7 @@ class FieldBuilder {
       }
       std::array<std::vector<int>, 4> kept;
       survey(faces, middle, radius, &kept);
-      for (int part = 0; part < 4; ++part) fill_block(child[part], cube, kept[part], brick);
+      for (int part = 0; part < 4; ++part) fill_block(child[part], cube, kept[part], uncut, brick);
     }
   }
 
@@ -324,8 +443,7 @@ class FieldBuilder {
       for (int y = block.low[1]; y <= block.high[1]; ++y)
         for (int x = block.low[0]; x <= block.high[0]; ++x) {
           points[waiting] = place_of(cube, x, y, z);
-          places[waiting] = static_cast<std::size_t>(x + DistanceField::corners *
-                                                             (y + DistanceField::corners * z));
+          places[waiting] = sample_index(x, y, z);
           if (++waiting == 4) ask();
         }
     if (waiting > 0) ask();
@@ -338,6 +456,8 @@ class FieldBuilder {
   std::vector<FacePlanes> planes_;   // of the faces
   Vector3d center_ = Vector3d::Zero();
   float rounding_mm_ = 0;  // error of the bounds of the planes
+  const DistanceField* uncut_ = nullptr;
+  std::optional<UnchangedFaces> unchanged_;  // with uncut_
 };
 
 DistanceField::DistanceField(const TriMesh& mesh, const FieldSettings& settings, int threads,
@@ -345,6 +465,21 @@ DistanceField::DistanceField(const TriMesh& mesh, const FieldSettings& settings,
     : settings_(settings) {
   lay_out(mesh);
   FieldBuilder(*this, mesh).run(threads, progress);
+  find_whole();
+}
+
+DistanceField::DistanceField(const TriMesh& piece, const TriMesh& uncut,
+                             const DistanceField& uncut_field, int threads,
+                             const Progress& progress)
+    : settings_(uncut_field.settings_),
+      origin_(uncut_field.origin_),
+      per_mm_(uncut_field.per_mm_),
+      size_(uncut_field.size_),
+      brick_(uncut_field.brick_.size(), -1),
+      bound_(uncut_field.bound_.size(), std::numeric_limits<float>::infinity()) {
+  FieldBuilder builder(*this, piece);
+  builder.copy_from(uncut_field, uncut);
+  builder.run(threads, progress);
   find_whole();
 }
 

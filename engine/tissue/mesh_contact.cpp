@@ -65,6 +65,10 @@ ContactObstacle::ContactObstacle(const TriMesh& mesh, const Box& region,
                            : cached_field(cache, mesh, field_settings(region), threads)),
       surface_(mesh) {}
 
+ContactObstacle::ContactObstacle(const TriMesh& piece, const TriMesh& uncut,
+                                 const ContactObstacle& of_uncut, int threads)
+    : field_(piece, uncut, of_uncut.field_, threads), surface_(piece) {}
+
 bool ContactObstacle::near(const Vector3d& p, double reach, Near& near) const {
   const DistanceField::Spot spot = field_.spot(p);
   if (spot.known && spot.distance_mm > reach) {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "engine/core/error.h"
+#include "engine/core/parallel.h"
 #include "engine/mesh/triangle_tree.h"
 #include "engine/tissue/harmonic_weights.h"
 #include "sim/tissue/model.h"
@@ -161,14 +162,18 @@ TissueContact contact_on_pieces(const TissueModel& uncut, std::span<const CutBon
       continue;
     }
     const PieceFractions& owners = fractions[static_cast<std::size_t>(cut - cuts.begin())];
-    for (const auto& piece : cut->pieces) {
+    const std::size_t first = contact.obstacles.size();
+    contact.obstacles.resize(first + cut->pieces.size());
+    parallel_for(cut->pieces.size(), threads, [&](std::size_t p) {
+      const BodySurface& piece = cut->pieces[p];
       std::vector<std::optional<Vector3d>> shift(contact.points.size());
       for (std::size_t i = 0; i < shift.size(); ++i)
         if (!whole.shift[i].isZero() &&
             owners.owner_at(contact.points[i].at(uncut.mesh->rest)) == piece.body)
           shift[i] = whole.shift[i];
-      contact.obstacles.push_back(make_obstacle(contact, uncut.mesh->rest, piece, threads, shift));
-    }
+      contact.obstacles[first + p] = make_piece_obstacle(contact, uncut.mesh->rest, piece,
+                                                         cut->surface, whole, threads, shift);
+    });
     for (const auto& graft : cut->grafts)
       contact.obstacles.push_back(make_new_obstacle(contact, uncut.mesh->rest, graft, threads));
   }

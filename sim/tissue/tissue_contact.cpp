@@ -207,6 +207,18 @@ Obstacle make_obstacle(const TissueContact& contact, const Nodes& rest, const Bo
   return made;
 }
 
+Obstacle make_piece_obstacle(const TissueContact& contact, const Nodes& rest,
+                             const BodySurface& piece, const TriMesh& uncut,
+                             const Obstacle& of_uncut, int threads,
+                             const std::vector<std::optional<Vector3d>>& shift) {
+  Obstacle made;
+  made.body = piece.body;
+  made.extent = bounding_box(piece.mesh);
+  made.surface = std::make_shared<ContactObstacle>(piece.mesh, uncut, *of_uncut.surface, threads);
+  fit_to_rest(contact, rest, shift, made);
+  return made;
+}
+
 Obstacle make_new_obstacle(const TissueContact& contact, const Nodes& rest, const BodySurface& bone,
                            int threads) {
   Obstacle made = obstacle_of(contact, rest, bone, threads);

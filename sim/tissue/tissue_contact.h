@@ -81,6 +81,12 @@ Obstacle make_obstacle(const TissueContact& contact, const Nodes& rest, const Bo
                        int threads = 1,
                        const std::vector<std::optional<Eigen::Vector3d>>& shift = {});
 
+/// The same of a piece of a surface that was cut. `of_uncut`: the obstacle of the whole surface.
+Obstacle make_piece_obstacle(const TissueContact& contact, const Nodes& rest,
+                             const BodySurface& piece, const TriMesh& uncut,
+                             const Obstacle& of_uncut, int threads,
+                             const std::vector<std::optional<Eigen::Vector3d>>& shift);
+
 /// A surface that is not there at rest: no overlap with it is allowed.
 Obstacle make_new_obstacle(const TissueContact& contact, const Nodes& rest, const BodySurface& bone,
                            int threads = 1);
