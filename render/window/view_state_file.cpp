@@ -130,6 +130,8 @@ void ViewStateFile::update(const Window& window, const FrameState* frame,
   json["notes"] = window.scene().notes;
   json["drawn_points"] = view.drawn_cut.points.size();
   if (window.scene().ct) json["ct"] = ct_of(*window.scene().ct);
+  if (view.chosen < window.scene().bodies.size())
+    json["chosen"] = window.scene().parts[window.scene().bodies[view.chosen].part].name;
   if (view.selected) json["selected"] = window.scene().parts[*view.selected].name;
   json["recent"] = nlohmann::json::array();
   for (const auto& path : window.scene().recent) json["recent"].push_back(path.string());

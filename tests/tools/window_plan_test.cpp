@@ -46,6 +46,7 @@ TEST_F(WindowSession, AGenioplastyIsPlannedByHand) {
   EXPECT_TRUE(press("m"));
   click("body");
   click("body:chin");
+  ASSERT_TRUE(wait_until([](const Json& s) { return s["chosen"] == "chin"; }));
   ASSERT_TRUE(wait_for_item("shift:S"));
   write_into("shift:S", "-1.5");  // upward the mandible stops it
   const auto is_lowered = [](const Json& s) {

@@ -63,7 +63,13 @@ class WindowSession : public testing::Test {
       if (!now.empty() && law(now)) return true;
       std::this_thread::sleep_for(std::chrono::milliseconds(30));
     }
+    std::printf("after %g s: %s\n", longest_s, summary(state()).dump().c_str());
     return false;
+  }
+  /// What a wait that failed prints of the state.
+  static Json summary(Json s) {
+    for (const char* name : {"items", "recent", "landmark_mm", "measured_points"}) s.erase(name);
+    return s;
   }
   bool wait_for_item(const std::string& name, bool there = true) {
     return wait_until([&](const Json& s) { return s["items"].contains(name) == there; });

@@ -76,7 +76,8 @@ void draw_sign(ImDrawList& list, Sign sign, ImVec2 c, float r, ImU32 ink_colour)
 }  // namespace
 
 void Pen::mark(const std::string& name, const std::string& words) {
-  if (!ImGui::IsItemVisible()) return;
+  // The first pass of a popup or tooltip only determines its size and is not shown.
+  if (!ImGui::IsItemVisible() || ImGui::IsWindowAppearing()) return;
   const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
   items.push_back({name, panel, {low.x, low.y, high.x - low.x, high.y - low.y}, words});
 }
