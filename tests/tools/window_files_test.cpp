@@ -360,9 +360,7 @@ TEST_F(WindowSession, ATransplantIsMovedReleasedAndTheDiskIsFull) {
   EXPECT_TRUE(press("m"));
   ASSERT_TRUE(wait_for_item("body"));
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
-  click("body");
-  ASSERT_TRUE(wait_for_item("body:transplant"));
-  click("body:transplant");
+  choose_body("transplant");
   ASSERT_TRUE(wait_for_item("release-body"));
   std::this_thread::sleep_for(std::chrono::milliseconds(300));
   const auto tip = rect("handle:S");

@@ -191,8 +191,7 @@ TEST_F(WindowSession, MovingThePatientEndsTheReleaseOfAPartAndIsReported) {
   start({folder_ / "case", "--motion", "open 5 over 0.5; close over 0.5"});
   ASSERT_TRUE(wait_until(idle)) << state().value("trouble", "nothing was said");
   EXPECT_TRUE(press("m"));
-  click("body");
-  click("body:left_cheek_ball");
+  choose_body("left_cheek_ball");
   see("a-fine-ball");
   const auto begin = [&] {
     click("release-body");
@@ -250,8 +249,7 @@ TEST_F(WindowSession, TheSkullIsMovedAgainstTheJawSlidesOnItAndIsReleased) {
   ASSERT_TRUE(wait_until([](const Json& s) { return opening_mm(s) > 19; }));
   EXPECT_TRUE(press("a"));
   EXPECT_TRUE(press("m"));
-  click("body");
-  click("body:skull");
+  choose_body("skull");
   see("opened");
   const double opened_mm = opening_mm(state());
   // Up by its number: the jaw stays in the picture, and its distance grows by that amount.

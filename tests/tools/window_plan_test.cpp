@@ -44,16 +44,13 @@ TEST_F(WindowSession, AGenioplastyIsPlannedByHand) {
 
   // A drag of the chin is added to its move.
   EXPECT_TRUE(press("m"));
-  click("body");
-  click("body:chin");
-  ASSERT_TRUE(wait_until([](const Json& s) { return s["chosen"] == "chin"; }));
+  choose_body("chin");
   ASSERT_TRUE(wait_for_item("shift:S"));
   write_into("shift:S", "-1.5");  // upward the mandible stops it
   const auto is_lowered = [](const Json& s) {
     return std::any_of(s["body_mm"].begin(), s["body_mm"].end(),
                        [](const Json& at) { return double(at[2]) < -1.4; });
   };
-  // The distance fields of both segments are computed first.
   ASSERT_TRUE(wait_until(is_lowered, 120));
   click("plan-take");
   ASSERT_TRUE(wait_until([&](const Json& s) { return idle(s) && move("up_mm") < -1; }, 120));

@@ -116,6 +116,12 @@ class WindowSession : public testing::Test {
     return -1;
   }
 
+  /// Selects the body that handles and numbers move.
+  void choose_body(const std::string& name) {
+    click("body");
+    click("body:" + name);
+    EXPECT_TRUE(wait_until([&](const Json& s) { return s["chosen"] == name; })) << name;
+  }
   /// Replaces the text of a field.
   void write_into(const std::string& field, const std::string& words) {
     click(field);
