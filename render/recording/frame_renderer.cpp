@@ -110,11 +110,23 @@ FrameRenderer::FrameRenderer(const PicturePlan& plan, const RecordingFiles& file
   if (plan_.overlays.muscles) muscles_ = muscles_of(patient);
   if (subject.settings.face) carry_face(subject.scene, rest_, subject.settings.threads);
   if (plan_.window && plan_.window->before) rest_ = *plan_.window->before;
+  const BeforeOperation* operation = plan_.window ? plan_.window->operation.get() : nullptr;
+  std::span<const Part> parts = patient.parts;
+  if (operation && !operation->removed.empty()) {
+    parts_ = patient.parts;
+    parts_.insert(parts_.end(), operation->removed.begin(), operation->removed.end());
+    parts = parts_;
+  }
 
   for (PlannedView& planned : planned_views(plan_, files, subject)) {
-    View view{std::move(planned.camera), plan_.settings, nullptr};
+    View view{std::move(planned.camera), plan_.settings, {}, nullptr};
     if (const auto* arch = view.camera.arch())
       for (const auto& [part, opacity] : arch->hidden()) view.settings.part_opacity[part] = opacity;
+    view.of_rest = view.settings;
+    if (operation) {
+      hide_removed(*operation, view.settings);
+      hide_added(*operation, view.of_rest);
+    }
     view.recorder = std::make_unique<Recorder>(planned.recorder);
     kept_ += view.recorder->kept_frames();
     views_.push_back(std::move(view));
@@ -126,7 +138,7 @@ FrameRenderer::FrameRenderer(const PicturePlan& plan, const RecordingFiles& file
   constexpr double max_pixels_for_two = 1.7e7;
   const double pixels = static_cast<double>(plan_.settings.width) * plan_.settings.height *
                         plan_.settings.supersampling * plan_.settings.supersampling;
-  drawers_.emplace(patient.parts, mapped || pixels > max_pixels_for_two ? 1 : 2);
+  drawers_.emplace(parts, mapped || pixels > max_pixels_for_two ? 1 : 2);
   const PictureSettings& size = plan_.settings;
   if (const int most = drawers_->max_side() / size.supersampling;
       size.width > most || size.height > most)
@@ -175,7 +187,7 @@ bool FrameRenderer::is_drawn(int frame) const {
   return false;
 }
 
-Image FrameRenderer::drawn(const View& view, const Camera& camera, const Shot& shot,
+Image FrameRenderer::drawn(const PictureSettings& settings, const Camera& camera, const Shot& shot,
                            bool with_map) const {
   auto& [renderer, desk, state, overlays] = shot;
   renderer.update(state);
@@ -187,7 +199,7 @@ Image FrameRenderer::drawn(const View& view, const Camera& camera, const Shot& s
       desk.displacement->clear(renderer);
   }
   desk.overlays.send(renderer, overlays);
-  return renderer.picture(camera, view.settings);
+  return renderer.picture(camera, settings);
 }
 
 Overlays FrameRenderer::overlays_of(const FrameState& state, bool with_paths) const {
@@ -215,11 +227,11 @@ Overlays FrameRenderer::chosen_overlays(const FrameState& state, bool with_paths
 
 Image FrameRenderer::picture(const View& view, const Camera& camera, const Shot& shot,
                              Annotations& notes) const {
-  Image image = drawn(view, camera, shot, true);
+  Image image = drawn(view.settings, camera, shot, true);
   if (plan_.wipe) {
     const Overlays still = overlays_of(rest_, false);
-    image = wiped(drawn(view, camera, {shot.renderer, shot.desk, rest_, still}, true), image,
-                  *plan_.wipe, plan_.settings.backdrop);
+    image = wiped(drawn(view.of_rest, camera, {shot.renderer, shot.desk, rest_, still}, true),
+                  image, *plan_.wipe, plan_.settings.backdrop);
     notes.line_at = *plan_.wipe;
   }
   add_key(image, shot.desk.words, shot.overlays.key, plan_.settings.backdrop);
@@ -236,8 +248,8 @@ Image FrameRenderer::before_after(const View& view, const Camera& camera, const 
   const Overlays still = overlays_of(rest_, false);
   for (std::size_t i = 0; i < images.size(); ++i) {
     const bool mapped = i == 2, moved = i > 0;
-    images[i] =
-        drawn(view, camera, moved ? shot : Shot{shot.renderer, shot.desk, rest_, still}, mapped);
+    images[i] = drawn(view.settings, camera,
+                      moved ? shot : Shot{shot.renderer, shot.desk, rest_, still}, mapped);
     auto notes = plan_.annotations;
     if (i == 0) add_key(images[i], shot.desk.words, shot.overlays.key, plan_.settings.backdrop);
     if (mapped)

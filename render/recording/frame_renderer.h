@@ -64,7 +64,7 @@ class FrameRenderer {
  private:
   struct View {
     RecordingCamera camera;
-    PictureSettings settings;
+    PictureSettings settings, of_rest;  // of_rest: of the state left of a wipe
     std::unique_ptr<Recorder> recorder;
   };
   /// Data of one drawing thread.
@@ -85,7 +85,8 @@ class FrameRenderer {
   /// With key and legend; returns the space that they leave for the notes.
   Image picture(const View& view, const Camera& camera, const Shot& shot, Annotations& notes) const;
   Image before_after(const View& view, const Camera& camera, const Shot& shot) const;
-  Image drawn(const View& view, const Camera& camera, const Shot& shot, bool with_map) const;
+  Image drawn(const PictureSettings& settings, const Camera& camera, const Shot& shot,
+              bool with_map) const;
   Image finished(const View& view, int frame, const Shot& shot) const;
   /// Whether any camera still needs the frame.
   bool is_drawn(int frame) const;
@@ -95,7 +96,8 @@ class FrameRenderer {
 
   const RecordingSubject subject_;
   PicturePlan plan_;
-  FrameState rest_;  // left of a wipe
+  FrameState rest_;          // left of a wipe
+  std::vector<Part> parts_;  // of the patient, with those that the plan's operation removes
   MotionPaths paths_;
   std::vector<Muscle> muscles_;  // the ones that are drawn
   std::vector<View> views_;

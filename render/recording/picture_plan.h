@@ -11,6 +11,7 @@
 #include "render/recording/overlay_drawing.h"
 #include "render/scene/scene_renderer.h"
 #include "render/scene/shown_overlays.h"
+#include "sim/frame/before_operation.h"
 
 namespace condyle {
 
@@ -22,7 +23,8 @@ struct WindowPicture {
   Camera camera = {};                                  // `own_camera` and `turning_camera`
   Eigen::Vector3d upright = {0, 0, 1};                 // axis of the latter
   std::shared_ptr<const FrameState> before = nullptr;  // left of a wipe; null: the patient at rest
-  std::function<Overlays(const FrameState&)> overlays = {};  // replace those by name
+  std::shared_ptr<const BeforeOperation> operation = nullptr;  // if `before` is the state before it
+  std::function<Overlays(const FrameState&)> overlays = {};    // replace those by name
 };
 
 /// Content of each picture of a recording.

@@ -489,4 +489,12 @@ Image SceneRenderer::picture(const Camera& camera, const PictureSettings& settin
   return image;
 }
 
+void hide_added(const BeforeOperation& operation, PictureSettings& settings) {
+  for (const std::string& name : operation.added) settings.part_opacity[name] = 0;
+}
+
+void hide_removed(const BeforeOperation& operation, PictureSettings& settings) {
+  for (const Part& part : operation.removed) settings.part_opacity[part.name] = 0;
+}
+
 }  // namespace condyle

@@ -14,6 +14,7 @@
 #include "render/image/drawn_box.h"
 #include "render/image/image.h"
 #include "render/overlay/overlays.h"
+#include "sim/frame/before_operation.h"
 #include "sim/frame/frame_state.h"
 #include "sim/frame/part.h"
 
@@ -45,6 +46,10 @@ struct PictureSettings {
   bool smooth_edges = false;  // FXAA, for pictures without multisampling
   int supersampling = 1;      // drawn this many times as wide and high, then averaged; 1 to 4
 };
+
+/// Hides the parts that were not there before an operation, or those that it removes.
+void hide_added(const BeforeOperation& operation, PictureSettings& settings);
+void hide_removed(const BeforeOperation& operation, PictureSettings& settings);
 
 /// Draws a case at a frame. Needs a current OpenGL 3.3 core context for its lifetime.
 class SceneRenderer {

@@ -74,6 +74,10 @@ std::uint64_t shown_hash(const ViewRecording& subject, const PicturePlan& plan) 
   if (const auto& kept = plan.window->before)
     shown["kept"] = {kept->state_hash,
                      pose(kept->poses[subject.patient->scene.patient.jaw.lower_arch])};
+  if (const auto& operation = plan.window->operation) {
+    for (const Part& part : operation->removed) shown["removed"].push_back(mesh_hash(part.mesh));
+    shown["added"] = operation->added;
+  }
   const auto overlaid = OverlayInputs::of(subject.view, subject.paths);
   const auto& [springs, prisms, bone_springs, axes, paths, muscles, layers, mirrored, known] =
       overlaid;
@@ -97,8 +101,10 @@ PicturePlan plan_of(const ViewRecording& subject) {
   plan.near_mm = DistanceBands{}.near_mm;
   plan.caption = record.caption;
   plan.cameras = record.cameras;
-  plan.window =
-      WindowPicture{.camera = record.camera, .upright = record.upright, .before = record.kept};
+  plan.window = WindowPicture{.camera = record.camera,
+                              .upright = record.upright,
+                              .before = record.kept,
+                              .operation = record.before};
   plan.window->overlays = [&subject](const FrameState& frame) {
     return view_overlays(*subject.patient, subject.motion->motion, frame, subject.view,
                          subject.paths);

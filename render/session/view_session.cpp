@@ -268,7 +268,7 @@ WindowScene ViewSession::scene_of_patient() const {
   scene.layers = layer_items(*state_.patient);
   scene.plan = plan_.view();
   if (auto before = before_operation(*state_.patient))
-    scene.before = std::make_shared<const FrameState>(std::move(*before));
+    scene.before = std::make_shared<const BeforeOperation>(std::move(*before));
   return scene;
 }
 

@@ -114,6 +114,17 @@ bool Window::State::lend_context() {
 Window::Window(const WindowOptions& options) : state_(std::make_unique<State>(options)) {}
 Window::~Window() = default;
 
+/// What a scene draws: also the parts that an operation removes.
+static std::shared_ptr<const DrawnParts> drawn_parts(const WindowScene& scene,
+                                                     std::shared_ptr<const void> keeper) {
+  if (!scene.before || scene.before->removed.empty())
+    return std::make_shared<DrawnParts>(
+        DrawnParts{scene.parts, scene.distance_colours, std::move(keeper)});
+  const auto all = std::make_shared<std::vector<Part>>(scene.parts.begin(), scene.parts.end());
+  all->insert(all->end(), scene.before->removed.begin(), scene.before->removed.end());
+  return std::make_shared<DrawnParts>(DrawnParts{*all, scene.distance_colours, all});
+}
+
 /// Shows other parts, without what the window knows of the earlier ones.
 void Window::change_parts(const WindowScene& scene, const ViewState& start,
                           std::shared_ptr<const void> keeper) {
@@ -123,13 +134,13 @@ void Window::change_parts(const WindowScene& scene, const ViewState& start,
   s.view = start;
   s.view.fit(scene);
   s.render_request = {.number = s.render_request.number};
-  s.comparison.frame = scene.before;
+  s.comparison.before = scene.before;
+  s.comparison.frame.reset();
+  if (scene.before) s.comparison.frame = {scene.before, &scene.before->frame};
   s.comparison.by_hand = false;
   s.comparison.values.reset();
   s.cannot_draw = false;
-  if (!scene.parts.empty())
-    s.render_request.parts = std::make_shared<DrawnParts>(
-        DrawnParts{scene.parts, scene.distance_colours, std::move(keeper)});
+  if (!scene.parts.empty()) s.render_request.parts = drawn_parts(scene, std::move(keeper));
   s.box.setEmpty();
   for (const Part& part : scene.parts)
     for (const auto& vertex : part.mesh.vertices) s.box.extend(vertex);
@@ -215,8 +226,7 @@ void Window::draw() { state_->draw(false); }
 
 void Window::renew_scene(const WindowScene& scene, std::shared_ptr<const void> keeper) {
   State& s = *state_;
-  s.render_request.parts = std::make_shared<DrawnParts>(
-      DrawnParts{scene.parts, scene.distance_colours, std::move(keeper)});
+  s.render_request.parts = drawn_parts(scene, std::move(keeper));
   s.render_request.map.reset();
   s.render_request.values.reset();
   s.comparison.values.reset();
@@ -251,7 +261,10 @@ std::vector<Request> Window::take_requests() {
       record->picture = s.settings();
       const Pose X_RC = s.view.hands.X_RC(s.frame() ? s.frame()->poses[s.view.hands.jaw] : Pose{});
       record->upright = X_RC.R.conjugate() * Eigen::Vector3d::UnitZ();
-      if (s.view.look.wipe) record->kept = s.comparison.frame;
+      if (s.view.look.wipe) {
+        record->kept = s.comparison.frame;
+        record->before = s.comparison.before;
+      }
     }
   if (!s.input.dropped.empty())
     requests.push_back(request::Open{std::exchange(s.input.dropped, {})});

@@ -151,6 +151,7 @@ void Window::State::run(Command command) {
     case Command::keep_state:
       comparison.frame = render_request.frame;
       comparison.by_hand = comparison.frame != nullptr;
+      comparison.before.reset();
       comparison.values = render_request.values;
       pacing.scene_changed = true;
       break;

@@ -35,6 +35,7 @@ namespace condyle {
 struct WindowComparison {
   std::shared_ptr<const FrameState> frame;
   bool by_hand = false;
+  std::shared_ptr<const BeforeOperation> before;  // the operation, where the frame is its own
   std::shared_ptr<const MapValues> values;  // its distances; none if they were not shown
 };
 

@@ -93,14 +93,14 @@ void add_pieces(Operated& operated, const PlanStep& step, const GraftLayout& gra
 
 /// Gums over resected bone and teeth leave with them: triangles that lie nearer to these than to
 /// what stays with the body.
-void trim_gums(Case& patient, BodyId body, const std::vector<Part>& resected) {
+void trim_gums(Case& patient, BodyId body, Resection& resection) {
   const auto nearest = [](const std::vector<TriangleTree>& trees, const Vector3d& p) {
     double least = infinity;
     for (const TriangleTree& tree : trees) least = std::min(least, tree.nearest(p, least).distance);
     return least;
   };
   std::vector<TriangleTree> gone, staying;
-  for (const Part& part : resected)
+  for (const Part& part : resection.parts)
     if (collides(part.role)) gone.emplace_back(part.mesh);
   for (const Part& part : patient.parts)
     if (part.body == body && collides(part.role)) staying.emplace_back(part.mesh);
@@ -112,10 +112,16 @@ void trim_gums(Case& patient, BodyId body, const std::vector<Part>& resected) {
       const Vector3d middle = (v[t[0]] + v[t[1]] + v[t[2]]) / 3;
       return nearest(gone, middle) < nearest(staying, middle);
     };
-    const TriMesh whole = gums.mesh;
-    std::erase_if(gums.mesh.triangles, goes);
-    if (gums.mesh.empty()) gums.mesh = whole;  // a part has a surface
+    Part removed = gums;
+    removed.name += "_" + resection.segment;
+    auto& triangles = removed.mesh.triangles;
+    const auto stays = std::stable_partition(triangles.begin(), triangles.end(), goes);
+    if (stays == triangles.begin() || stays == triangles.end()) continue;  // a part has a surface
+    gums.mesh.triangles.assign(stays, triangles.end());
+    triangles.erase(stays, triangles.end());
     drop_unreferenced(gums.mesh);
+    drop_unreferenced(removed.mesh);
+    resection.parts.push_back(std::move(removed));
   }
 }
 
@@ -214,7 +220,7 @@ void resect_segment(Operated& operated, const PlanStep& step) {
   } catch (const InputError& error) {
     throw InputError(step_name(step) + ": " + error.what());
   }
-  trim_gums(patient, *patient.bodies.find(parent), resection.parts);
+  trim_gums(patient, *patient.bodies.find(parent), resection);
   operated.resections.push_back(std::move(resection));
 }
 

@@ -57,19 +57,33 @@ std::shared_ptr<const SessionPatient> completed_patient(SessionPatient patient, 
   return made;
 }
 
-std::optional<FrameState> before_operation(const SessionPatient& patient) {
-  const auto& planned = patient.operated->poses.X_CB;
+std::optional<BeforeOperation> before_operation(const SessionPatient& patient) {
+  const Operated& operated = *patient.operated;
+  const auto& planned = operated.poses.X_CB;
+  BeforeOperation before;
+  for (const Resection& resection : operated.resections)
+    for (Part part : resection.parts) {
+      part.body = cranium_body;
+      before.removed.push_back(std::move(part));
+    }
+  for (const GraftLayout& graft : operated.grafts)
+    for (const GraftPiece& piece : graft.pieces)
+      for (const Part& part : operated.patient.parts)
+        if (operated.patient.bodies[part.body].name == piece.body)
+          before.added.push_back(part.name);
   const Pose rest;
-  if (std::all_of(planned.begin(), planned.end(),
+  if (before.removed.empty() && before.added.empty() &&
+      std::all_of(planned.begin(), planned.end(),
                   [&](const Pose& X) { return bit_identical(X, rest); }))
     return std::nullopt;
-  FrameState before = patient.at_rest;
-  before.contacts = {};
-  for (std::size_t b = 0; b < std::min(planned.size(), before.poses.X_CB.size()); ++b)
-    before.poses.X_CB[b] = planned[b].inverse();
+  FrameState& frame = before.frame;
+  frame = patient.at_rest;
+  frame.contacts = {};
+  for (std::size_t b = 0; b < std::min(planned.size(), frame.poses.X_CB.size()); ++b)
+    frame.poses.X_CB[b] = planned[b].inverse();
   if (const Part* face = patient.uncut->find(Role::face)) {
-    before.face.clear();
-    for (const Eigen::Vector3d& p : face->mesh.vertices) before.face.push_back(p.cast<float>());
+    frame.face.clear();
+    for (const Eigen::Vector3d& p : face->mesh.vertices) frame.face.push_back(p.cast<float>());
   }
   return before;
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim/case/muscle.h"
+#include "sim/frame/before_operation.h"
 #include "sim/operation/segment_overlaps.h"
 #include "sim/plan/plan.h"
 #include "sim/simulator/simulator.h"
@@ -37,9 +38,8 @@ std::shared_ptr<const SessionPatient> make_session_patient(Case patient,
                                                            const Progress& progress,
                                                            const std::optional<Plan>& plan = {});
 
-/// The patient before the operation, as a frame of the operated one: all bodies where they were,
-/// and the face as it was. Absent where nothing was moved.
-std::optional<FrameState> before_operation(const SessionPatient& patient);
+/// The patient before the operation. Absent where nothing was moved, resected or grafted.
+std::optional<BeforeOperation> before_operation(const SessionPatient& patient);
 
 /// The patient with what follows from its scene: its state at rest and its muscles.
 std::shared_ptr<const SessionPatient> completed_patient(SessionPatient patient, int threads = 2);

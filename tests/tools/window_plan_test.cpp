@@ -66,6 +66,72 @@ TEST_F(WindowSession, AGenioplastyIsPlannedByHand) {
   EXPECT_EQ(read_text(file), before);
 }
 
+/// Pixels of a region with much more green than red.
+int green_pixels(const Picture& picture, const Region& region) {
+  int count = 0;
+  for (int y = int(region.y); y < int(region.y + region.height); ++y)
+    for (int x = int(region.x); x < int(region.x + region.width); ++x) {
+      const std::uint8_t* p = &picture.rgba[4 * (std::size_t(y) * picture.width + x)];
+      count += p[1] > p[0] + 20;
+    }
+  return count;
+}
+
+TEST_F(WindowSession, LeftOfTheWipeResectedBoneIsThereAndItsGraftIsNot) {
+  const std::string plan = folder_ / "plan.json";
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"plan", "new", "--out", plan},
+        {"plan", "resect", plan, "tumour", "--from", "44", "--to", "47", "--below-margins"},
+        {"plan", "graft", plan, "tumour", "--pieces", "2"}}) {
+    const Outcome made = condyle(arguments);
+    ASSERT_EQ(made.code, 0) << made.err;
+  }
+  const auto seen_from_the_front = [&](const char* step) {
+    ASSERT_TRUE(wait_until(idle, 180));
+    EXPECT_TRUE(press("k"));
+    EXPECT_TRUE(press("a"));
+    ASSERT_TRUE(wait_until([](const Json& s) {
+      return double(s["camera_direction"][1]) < -0.9999 && s["picture_finished"] == true;
+    }));
+    see(step);
+  };
+  const std::string motion = "open 1 over 0.2";
+  start({"--motion", motion, "--no-tissue"});
+  seen_from_the_front("uncut");
+  const Picture uncut = seen_;
+  EXPECT_TRUE(press("ctrl+q"));
+  ASSERT_EQ(wait_for_end(), 0);
+
+  start({"--plan", plan, "--motion", motion, "--no-tissue"});
+  seen_from_the_front("now");
+  const Picture now = seen_;
+  click("left-tab:Look");
+  click("wipe");
+  ASSERT_TRUE(wait_for_item("wipe:line"));
+  see("wiped");
+  Region right_side = view_region();  // of the patient, where the jaw was resected
+  right_side.width *= 0.47;
+  // Resected bone has the colour of a segment; the rest is as it was, the graft away.
+  EXPECT_GT(difference(uncut, now, right_side), 0.005);
+  EXPECT_GT(green_pixels(now, right_side), 200) << "the graft";
+  EXPECT_EQ(green_pixels(seen_, right_side), 0);
+
+  // So it is in a recording.
+  click("tab:Record");
+  click("record-height:720");
+  click("record-rate:10");
+  click("record-film");
+  write_into("record-folder", folder_ / "film");
+  click("record");
+  ASSERT_TRUE(wait_until(
+      [&](const Json& s) { return idle(s) && fs::exists(folder_ / "film/hashes.csv"); }));
+  const Picture first(folder_ / "film/frames/000000.png");
+  ASSERT_FALSE(first.empty());
+  first.save(kept_pictures() / (test_name() + "-recorded.png"));
+  EXPECT_EQ(green_pixels(first, {0, 0, 0.49 * first.width, double(first.height)}), 0);
+  EXPECT_GT(difference(first, Picture(folder_ / "film/frames/000002.png")), 0);
+}
+
 TEST_F(WindowSession, APartIsPickedAndCutWithTheMouse) {
   const std::string file = folder_ / "plan.json";
   start({"--motion", "rest", "--no-tissue"});

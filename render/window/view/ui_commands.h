@@ -16,6 +16,7 @@
 #include "sim/choice/file_role.h"
 #include "sim/choice/motion_choice.h"
 #include "sim/choice/plan_view.h"
+#include "sim/frame/before_operation.h"
 #include "sim/frame/frame_state.h"
 #include "sim/frame/part.h"
 
@@ -47,7 +48,8 @@ struct Record {
   Eigen::Vector3d upright = {
       0, 0, 1};  // axis of the turntable: the world's upright, in the cranium's frame
   PictureSettings picture;
-  std::shared_ptr<const FrameState> kept = {};  // left of the wipe, if there is one
+  std::shared_ptr<const FrameState> kept = {};         // left of the wipe, if there is one
+  std::shared_ptr<const BeforeOperation> before = {};  // if `kept` is the state before it
 };
 struct StopRecording {};
 /// Resumes the recording that was stopped or found, with its existing pictures.

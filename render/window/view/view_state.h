@@ -12,6 +12,7 @@
 #include "render/window/view/measuring.h"
 #include "render/window/view/movable.h"
 #include "render/window/view/ui_commands.h"
+#include "sim/frame/before_operation.h"
 #include "sim/frame/frame_state.h"
 #include "sim/frame/part.h"
 
@@ -46,11 +47,11 @@ struct WindowScene {
   std::vector<Landmark> landmarks_in_use = {};      // those of the simulation
   std::vector<TreeItem> muscles = {};  // lines of action that can be shown, in the case's order
   std::vector<TreeItem> layers = {};   // sheets of the soft tissue, from the skin inward
-  std::vector<std::filesystem::path> recent = {};  // opened before, the last one first
-  PlanView plan = {};                              // of the operation
-  std::shared_ptr<const FrameState> before = {};   // the operation; none without moves
-  std::filesystem::path session = {};              // file of the session; empty: not saved
-  std::shared_ptr<const CtView> ct = {};           // that is imported; none: no import
+  std::vector<std::filesystem::path> recent = {};      // opened before, the last one first
+  PlanView plan = {};                                  // of the operation
+  std::shared_ptr<const BeforeOperation> before = {};  // none where the plan changes nothing
+  std::filesystem::path session = {};                  // file of the session; empty: not saved
+  std::shared_ptr<const CtView> ct = {};               // that is imported; none: no import
   bool has_midsagittal_plane = false;  // landmarks define one, by which parts can be mirrored
 };
 
