@@ -8,9 +8,9 @@
 namespace condyle {
 
 /// The preconditioner of a sequence of frames, recomputed asynchronously: started at the end of one
-/// frame, it is used from a fixed later frame on, which waits for it if necessary. Results
-/// therefore do not depend on timing. A value that belongs to the state of a frame: continuing from
-/// a copy gives identical frames.
+/// frame, it is used from a later frame on that its size determines, late enough that no frame has
+/// to wait for it. Results therefore do not depend on timing. A value that belongs to the state of
+/// a frame: continuing from a copy gives identical frames.
 class AsyncPreconditioner {
  public:
   explicit AsyncPreconditioner(std::shared_ptr<const HessianFactor> first)
@@ -26,10 +26,12 @@ class AsyncPreconditioner {
   void replace(std::shared_ptr<const HessianFactor> by) {
     now_ = std::move(by);
     iterations_ = 0;
+    superseded_ = next_.valid();
   }
 
-  static constexpr int lag = 1;  // frames
-  /// Starts the factorisation at state x, for use `lag` frames later; ignored while one is pending.
+  /// Frames from the start of a factorization to its use.
+  static int lag(const HessianFactor& factor);
+  /// Starts the factorisation at state x, for use lag() frames later; ignored while one is pending.
   /// With one thread it is computed when due, or in `finish`. `owner` keeps the mesh alive.
   void begin(const SpringPrismMesh& mesh, MeshLoads loads, Nodes x, int threads,
              std::shared_ptr<const void> owner);
@@ -43,6 +45,7 @@ class AsyncPreconditioner {
   std::shared_future<std::shared_ptr<const HessianFactor>> next_;
   int frames_left_ = 0;
   int iterations_ = 0;
+  bool superseded_ = false;  // the pending factor: a newer one is in use
 };
 
 }  // namespace condyle

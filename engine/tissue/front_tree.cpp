@@ -215,4 +215,13 @@ std::ptrdiff_t FrontTree::find(int row, int column) const {
          static_cast<std::ptrdiff_t>(in_rows) * block;
 }
 
+double FrontTree::multiplications() const {
+  double sum = 0;
+  for (const Front& front : fronts) {
+    const double high = height(front), pivots = front.pivots * block, low = high - pivots;
+    sum += (high * high * high - low * low * low) / 3;
+  }
+  return sum / 2;  // the lower triangle
+}
+
 }  // namespace condyle

@@ -28,6 +28,8 @@ struct FrontTree {
   int update_height(const Front& f) const { return (f.rows_end - f.rows_begin) * block; }
   /// Panel's first float of the block (row, column); places, row >= column. -1 if not stored.
   std::ptrdiff_t find(int row, int column) const;
+  /// Multiplications of a factorization.
+  double multiplications() const;
 
   static constexpr int beyond =
       16;  // floats of padding that vector kernels may access after each part

@@ -51,6 +51,15 @@ void HessianFactor::solve(const Nodes& g, Nodes& z) const {
   for (std::size_t i = 0; i < at.size(); ++i) convert(&b[i * size], size, z[at[i] * nodes].data());
 }
 
+double HessianFactor::iterations_per_factorization() const {
+  // Measured on 2,000 to 100,000 nodes: 13 to 61 iterations, as the multiplications per number of
+  // the factor, which each solve reads twice. Elements and assembly take as long in both.
+  constexpr double least = 8, per_multiplication = 0.1;
+  const FrontTree& tree = *pattern_->tree;
+  return least +
+         per_multiplication * tree.multiplications() / static_cast<double>(tree.panel_floats);
+}
+
 std::size_t HessianFactor::bytes() const { return factor_.bytes(); }
 
 }  // namespace condyle

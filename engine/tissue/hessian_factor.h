@@ -37,6 +37,10 @@ class HessianFactor final : public Preconditioner {
   void solve(const Nodes& g, Nodes& z) const override;
   void set_threads(int threads) { threads_ = threads; }  // of solve
 
+  /// Iterations of the minimizer that take about as long as a factorization. From sizes alone, so
+  /// that it is the same on every machine.
+  double iterations_per_factorization() const;
+
   /// Memory of the factor and the work space of a solve.
   std::size_t bytes() const override;
 

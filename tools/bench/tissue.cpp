@@ -64,8 +64,7 @@ class TissueBench {
     time_setup();
     for (int threads : {1, 2}) race_cold(threads);
     add_peers();
-    for (int threads : {1, 2}) add(warm_frames(target_.set, threads));
-    for (int nodes : options_.sizes) add(warm_frames(make_synthetic_set(size_of_nodes(nodes)), 2));
+    for (const bool crushed : {false, true}) time_warm(crushed);
     predict();
     compare_tolerances();
     compare_kernels();
@@ -86,6 +85,17 @@ class TissueBench {
         row.contains("start") ? row["start"].get<std::string>() : "", row["nodes"].get<int>(),
         row["threads"].get<int>(), time("median"), time("p95"), time("cpu_median"),
         row.contains("error_mm") ? fmt::format("{:.1e}", row["error_mm"].get<double>()) : "");
+  }
+
+  /// With the rim below the hinge moving with the jaw, or crushed against a rim that stays.
+  void time_warm(bool crushed) {
+    const auto set_of = [&](SyntheticSize size) {
+      size.rim_moves = !crushed;
+      return make_synthetic_set(size);
+    };
+    const char* name = crushed ? "tissue.crushed" : "tissue.warm";
+    for (int threads : {1, 2}) add(warm_frames(set_of(patient2_size()), threads, name));
+    for (int nodes : options_.sizes) add(warm_frames(set_of(size_of_nodes(nodes)), 2, name));
   }
 
   void time_setup() {

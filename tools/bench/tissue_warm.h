@@ -11,7 +11,8 @@ namespace condyle {
 /// tissue's own motion foretells, with a factor made for that place between the two frames: beside
 /// the loop, or with one thread in the time between them, which is reported. A frame's time has in
 /// it what it waited for a factor. A frame that has spent its budget is left as it is. Errors are
-/// measured against solves that go on from there.
-nlohmann::ordered_json warm_frames(const SyntheticSet& set, int threads);
+/// measured against solves that go on from there; above 0.1 mm the row has no time. `name`: of the
+/// row.
+nlohmann::ordered_json warm_frames(const SyntheticSet& set, int threads, const char* name);
 
 }  // namespace condyle

@@ -142,7 +142,8 @@ SyntheticSet make_synthetic_set(const SyntheticSize& size) {
   for (int c : inside) anchor(node_of(c, size.layers, set.sheets), height_of(c) < 0, 2.0);
   for (int c = 0; c < set.columns; ++c)
     if (sheet.rim[c])
-      for (int s : size.boundary_sheets) anchor(node_of(c, s, set.sheets), false, 2.0);
+      for (int s : size.boundary_sheets)
+        anchor(node_of(c, s, set.sheets), size.rim_moves && height_of(c) < hinge.z(), 2.0);
   set.node_fraction = harmonic_weights(set.mesh, given, given_fraction);
   set.anchor_offset.assign(set.mesh.anchor_node.size(), Vector3d::Zero());
   return set;

@@ -10,6 +10,9 @@ struct SyntheticSize {
   int columns = 46, rim = 18, layers = 2;
   int bone_springs = 21;
   std::vector<int> boundary_sheets = {0, 1, 2};  // sheets whose rim is held
+  // The rim below the hinge moves with the lower bone, as skin around it does; else it stays, and
+  // the tissue is crushed against it.
+  bool rim_moves = false;
 };
 
 /// Sizes of the published experiments: 138 positions, 986 springs, 144 volumes; the second
