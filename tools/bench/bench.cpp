@@ -73,6 +73,13 @@ void add_bench(Commands& commands) {
   in_range(convergence.add_option("--sizes", options->study_sizes,
                                   "Nodes; default 1000 2000 4000 8000 16000 32000"),
            400, 200000);
+  CLI::App& patient =
+      add("patient", "Warm frames of the patient's tissue, beside synthetic sets of equal size",
+          "condyle bench patient --sizes 2080 6000 --json", run_bench_patient);
+  add_patient(patient, *options);
+  in_range(
+      patient.add_option("--sizes", options->patient_sizes, "Nodes; default 2080 6000 10000 30000"),
+      400, 200000);
   CLI::App& mesh = add("mesh", "The decimators on the built-in patient's surfaces",
                        "condyle bench mesh --json", run_bench_mesh);
   in_range(mesh.add_option("--repeats", options->repeats, "Runs to measure; default 3"), 1, 1000);

@@ -1,0 +1,155 @@
+// Warm frames of a patient's tissue of several sizes, beside synthetic sets of equal size.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "engine/core/error.h"
+#include "sim/contact/contact.h"
+#include "sim/motion/motion.h"
+#include "sim/tissue/lips.h"
+#include "sim/tissue/tissue.h"
+#include "tools/bench/baseline/tissue_target.h"
+#include "tools/bench/bench.h"
+#include "tools/bench/tissue_warm.h"
+#include "tools/common.h"
+
+namespace condyle {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using FaceVertices = std::vector<Eigen::Vector3f>;
+
+constexpr double degrees_per_frame = 2.0 / 3, last_degrees = 30;
+constexpr int sampled_every = 5;
+constexpr double most_error_mm = 0.05;
+
+struct FrameGoal {
+  int nodes;  // up to
+  double median_ms, p95_ms;
+};
+constexpr FrameGoal frame_goals[] = {
+    {3000, 2, 5}, {8000, 8, 20}, {15000, 15, 40}, {1 << 30, 80, 0}};
+
+/// Poses of the jaw along the opening, with equal rotations from one to the next.
+std::vector<Pose> steady_opening(const Case& patient) {
+  const ContactModel contacts(patient);
+  const Motion motion = make_motion("opening", patient, contacts);
+  constexpr int parts = 4000;
+  std::vector<Pose> poses;
+  double reached = 0;
+  for (int i = 0; i <= parts && reached < last_degrees; ++i) {
+    const Pose X_CM = motion.target(0.5 * motion.duration_s * i / parts);
+    const double degrees = rotation_angle(X_CM) * 180 / std::numbers::pi;
+    if (degrees < reached + degrees_per_frame) continue;
+    reached += degrees_per_frame;
+    poses.push_back(X_CM);
+  }
+  return poses;
+}
+
+/// Distances of the vertices that a face has moved from rest by more than 1 mm to where another
+/// has them, mm.
+void add_errors(const FaceVertices& rest, const FaceVertices& is, const FaceVertices& should,
+                std::vector<double>& errors) {
+  for (std::size_t i = 0; i < rest.size(); ++i)
+    if ((should[i] - rest[i]).norm() > 1) errors.push_back((is[i] - should[i]).norm());
+}
+
+Json patient_frames(const Case& patient, const TissueModel& tissue, const std::vector<Pose>& poses,
+                    int threads) {
+  std::vector<double> wall, cpu, iterations, errors;
+  FaceVertices rest, is, should;
+  TissueState state = rest_tissue(tissue);
+  deform_face(tissue, state, rest, threads);
+  TissueWarmStart warm;
+  int not_converged = 0;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    BodyPoses at;
+    at[patient.jaw.lower_arch] = poses[i];
+    const Stopwatch watch;
+    state = solve_tissue(tissue, state, at.X_CB, {.threads = threads}, warm);
+    wall.push_back(watch.wall_ms());
+    cpu.push_back(watch.cpu_ms());
+    iterations.push_back(state.iterations);
+    not_converged += !state.converged;
+    if (i % sampled_every != sampled_every - 1) continue;
+    TissueWarmStart aside = warm;
+    deform_face(tissue, state, is, threads);
+    deform_face(tissue, solve_to_equilibrium(tissue, state, aside, {.threads = threads}), should,
+                threads);
+    add_errors(rest, is, should, errors);
+  }
+  const TissueSummary made = summary(tissue);
+  const double error_mm = quantiles(errors).p95;
+  Json row = timing_json({"patient.tissue", made.nodes, threads, "condyle"}, quantiles(wall),
+                         quantiles(cpu).median, error_mm);
+  row["patient"] = patient.name;
+  row["iterations"] = quantiles(iterations).median;
+  row["iterations_p95"] = quantiles(iterations).p95;
+  row["frames"] = poses.size();
+  row["frames_not_converged"] = not_converged;
+  row["greatest_error_mm"] = *std::max_element(errors.begin(), errors.end());
+  for (const FrameGoal& goal : frame_goals)
+    if (made.nodes <= goal.nodes) {
+      row["goal"] = goal.median_ms;
+      if (goal.p95_ms > 0) row["goal_p95"] = goal.p95_ms;
+      break;
+    }
+  if (error_mm > most_error_mm) row["median"] = row["p95"] = nullptr;
+  return row;
+}
+
+void print_frames(const Json& row) {
+  const auto ms = [&](const char* name) {
+    return !row.contains(name) || row[name].is_null()
+               ? "-"
+               : fmt::format("{:.2f}", row[name].get<double>());
+  };
+  fmt::print(stderr, "  {:<16}{:>8}{:>10}{:>10}{:>10}{:>8}{:>8}{:>12.1e}\n",
+             row["name"].get<std::string>(), row["nodes"].get<int>(), ms("median"), ms("p95"),
+             ms("cpu_median"), row["iterations"].get<double>(), ms("goal"),
+             row["error_mm"].get<double>());
+}
+
+}  // namespace
+
+int run_bench_patient(const BenchOptions& options, const CommonOptions& common) {
+  ProgressBar bar(common);
+  Case patient = open_patient(options.patient, common, bar);
+  if (!patient.find(Role::face)) throw InputError(patient.name + " has no face");
+  const std::vector<Pose> poses = steady_opening(patient);
+  if (poses.size() < sampled_every)
+    throw InputError(fmt::format("the jaw of {} opens by less than {:.0f}°", patient.name,
+                                 sampled_every * degrees_per_frame));
+  part_lips(patient);
+  bar.clear();
+  if (!common.quiet)
+    fmt::print(stderr, "ms  {:<14}{:>8}{:>10}{:>10}{:>10}{:>8}{:>8}{:>12}\n", "", "nodes", "median",
+               "p95", "processor", "its", "goal", "error mm");
+  Json results = Json::array();
+  const auto add = [&](Json row) {
+    if (!common.quiet) print_frames(row);
+    results.push_back(std::move(row));
+  };
+  for (const int nodes : options.patient_sizes) {
+    TissueSettings settings;
+    settings.threads = common.threads;
+    settings.surface_nodes = std::max(100, nodes / 4);
+    const auto tissue = build_tissue(patient, settings);
+    add(patient_frames(patient, *tissue, poses, common.threads));
+    SyntheticSize size = size_of_nodes(summary(*tissue).nodes);
+    size.rim_moves = true;
+    add(warm_frames(make_synthetic_set(size), common.threads, "patient.set"));
+  }
+  if (common.json)
+    fmt::print("{}\n", Json{{"machine", machine_json()}, {"results", results}}.dump(
+                           2, ' ', false, Json::error_handler_t::replace));
+  return 0;
+}
+
+}  // namespace condyle
