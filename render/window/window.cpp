@@ -38,6 +38,17 @@ void fit_to_screen(int& width, int& height) {
   if (high > 0) height = std::min(height, static_cast<int>(static_cast<float>(high) / scale_y));
 }
 
+/// What a scene draws: also the parts that an operation removes.
+std::shared_ptr<const DrawnParts> drawn_parts(const WindowScene& scene,
+                                              std::shared_ptr<const void> keeper) {
+  if (!scene.before || scene.before->removed.empty())
+    return std::make_shared<DrawnParts>(
+        DrawnParts{scene.parts, scene.distance_colours, std::move(keeper)});
+  const auto all = std::make_shared<std::vector<Part>>(scene.parts.begin(), scene.parts.end());
+  all->insert(all->end(), scene.before->removed.begin(), scene.before->removed.end());
+  return std::make_shared<DrawnParts>(DrawnParts{*all, scene.distance_colours, all});
+}
+
 }  // namespace
 
 Window::State::State(const WindowOptions& given) : options(given), arrangement(given.arrangement) {
@@ -113,17 +124,6 @@ bool Window::State::lend_context() {
 
 Window::Window(const WindowOptions& options) : state_(std::make_unique<State>(options)) {}
 Window::~Window() = default;
-
-/// What a scene draws: also the parts that an operation removes.
-static std::shared_ptr<const DrawnParts> drawn_parts(const WindowScene& scene,
-                                                     std::shared_ptr<const void> keeper) {
-  if (!scene.before || scene.before->removed.empty())
-    return std::make_shared<DrawnParts>(
-        DrawnParts{scene.parts, scene.distance_colours, std::move(keeper)});
-  const auto all = std::make_shared<std::vector<Part>>(scene.parts.begin(), scene.parts.end());
-  all->insert(all->end(), scene.before->removed.begin(), scene.before->removed.end());
-  return std::make_shared<DrawnParts>(DrawnParts{*all, scene.distance_colours, all});
-}
 
 /// Shows other parts, without what the window knows of the earlier ones.
 void Window::change_parts(const WindowScene& scene, const ViewState& start,
