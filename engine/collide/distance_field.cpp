@@ -79,6 +79,11 @@ std::size_t DistanceField::memory_bytes() const {
          bound_.size() * sizeof(bound_[0]);
 }
 
+std::uint64_t DistanceField::grid_hash() const {
+  return hash_values(std::span<const int>(size_),
+                     hash_values(std::span<const double>(origin_.data(), 3)));
+}
+
 std::uint64_t DistanceField::hash() const {
   std::uint64_t h = hash_values(std::span<const int>(size_));
   h = hash_values(std::span<const std::int32_t>(brick_), h);

@@ -85,6 +85,8 @@ class DistanceField {
   std::size_t memory_bytes() const;
   /// Hash of all samples.
   std::uint64_t hash() const;
+  /// Of the place and size of the grid.
+  std::uint64_t grid_hash() const;
 
   /// Binary form of the field with a checksum; `from_bytes` returns nothing when the data are
   /// damaged or carry another name.
@@ -182,6 +184,11 @@ inline FieldSample DistanceField::at(const Eigen::Vector3d& p) const {
 DistanceField cached_field(const std::filesystem::path& cache, const TriMesh& mesh,
                            const FieldSettings& settings, int threads = 1,
                            const Progress& progress = {});
+
+/// The same of a piece of a mesh that was cut; see DistanceField.
+DistanceField cached_piece_field(const std::filesystem::path& cache, const TriMesh& piece,
+                                 const TriMesh& uncut, const DistanceField& uncut_field,
+                                 int threads = 1, const Progress& progress = {});
 
 /// $XDG_CACHE_HOME/condyle, else ~/.cache/condyle; empty when neither is set.
 std::filesystem::path field_cache_folder();

@@ -230,7 +230,8 @@ class FieldBuilder {
   /// Whether the field within a radius (mm) of a point is that of the uncut mesh, of which one
   /// sample there is given. The distance to a union of closed shells changes by at most the
   /// displacement: where both are the same at one place, and the faces in which the meshes differ
-  /// are this far away, these are nearest nowhere within the radius.
+  /// are this far away, these are nearest nowhere within the radius. Not so where a shell crosses
+  /// itself; the field has unknown cells there.
   bool is_unchanged(const std::vector<int>& faces, const Vector3d& p, double radius,
                     double distance, const Vector3d& place, float uncut) const {
     const double reach = std::abs(distance) + 2 * radius + 1e-3;
@@ -247,16 +248,21 @@ class FieldBuilder {
   bool is_unchanged(const Cube& cube, int edge, const Vector3d& center, double radius,
                     double distance) const {
     constexpr int half = DistanceField::cells / 2;
+    const DistanceField::Brick* sampled = nullptr;
+    Vector3d place;
     for (int i = 0; i < edge * edge * edge; ++i) {
-      Cube first;
-      first.x = cube.x + i % edge;
-      first.y = cube.y + i / edge % edge;
-      first.z = cube.z + i / (edge * edge);
-      if (const auto* brick = uncut_brick(first.x, first.y, first.z))
-        return is_unchanged(cube.faces, center, radius, distance, place_of(first, half, half, half),
-                            brick->value[sample_index(half, half, half)]);
+      Cube at;
+      at.x = cube.x + i % edge;
+      at.y = cube.y + i / edge % edge;
+      at.z = cube.z + i / (edge * edge);
+      const auto* brick = uncut_brick(at.x, at.y, at.z);
+      if (!brick) continue;
+      if (brick->unknown.any()) return false;
+      if (!sampled) place = place_of(at, half, half, half);
+      if (!sampled) sampled = brick;
     }
-    return false;
+    return sampled && is_unchanged(cube.faces, center, radius, distance, place,
+                                   sampled->value[sample_index(half, half, half)]);
   }
 
   void copy_children(const Cube& parent, int edge, bool upper, std::vector<Cube>& reached) {
@@ -394,7 +400,7 @@ class FieldBuilder {
   /// `uncut`: the brick of the uncut mesh's field, where there is one.
   void fill_block(const Block& block, const Cube& cube, const std::vector<int>& faces,
                   const DistanceField::Brick* uncut, DistanceField::Brick& brick) const {
-    if (uncut && copy_block(block, cube, faces, *uncut, brick)) return;
+    if (uncut && !uncut->unknown.any() && copy_block(block, cube, faces, *uncut, brick)) return;
     const int widest = std::max(
         {block.high[0] - block.low[0], block.high[1] - block.low[1], block.high[2] - block.low[2]});
     if (widest <= 2) {

@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <exception>
+#include <functional>
 
 #include "engine/collide/distance_field.h"
 #include "engine/core/files.h"
@@ -50,6 +51,30 @@ std::uint64_t name_of(const TriMesh& mesh, const FieldSettings& settings) {
   const std::uint64_t start[] = {format_version, mesh_hash({mesh.vertices, mesh.triangles, {}})};
   return hash_values(std::span<const double>(numbers),
                      hash_values(std::span<const std::uint64_t>(start)));
+}
+
+/// The field stored under a name in the cache folder, else computed and stored there.
+DistanceField stored_field(const fs::path& cache, std::uint64_t name, const FieldSettings& settings,
+                           const std::function<DistanceField()>& compute) {
+  char text[32];
+  std::snprintf(text, sizeof text, "field-%016llx.bin", static_cast<unsigned long long>(name));
+  const fs::path file = cache / text;
+  if (!cache.empty()) try {
+      std::error_code absent;
+      if (fs::exists(file, absent))
+        if (auto field = DistanceField::from_bytes(read_file(file), name, settings))
+          return *std::move(field);
+    } catch (const std::exception&) {
+      // Unreadable: treated as absent.
+    }
+  DistanceField field = compute();
+  if (!cache.empty()) try {
+      make_folder(cache);
+      write_file(file, field.to_bytes(name));
+    } catch (const std::exception&) {
+      // Failure to write the cache only costs time.
+    }
+  return field;
 }
 
 }  // namespace
@@ -107,26 +132,20 @@ std::optional<DistanceField> DistanceField::from_bytes(std::string_view bytes, s
 
 DistanceField cached_field(const fs::path& cache, const TriMesh& mesh,
                            const FieldSettings& settings, int threads, const Progress& progress) {
-  const std::uint64_t name = name_of(mesh, settings);
-  char text[32];
-  std::snprintf(text, sizeof text, "field-%016llx.bin", static_cast<unsigned long long>(name));
-  const fs::path file = cache / text;
-  if (!cache.empty()) try {
-      std::error_code absent;
-      if (fs::exists(file, absent))
-        if (auto field = DistanceField::from_bytes(read_file(file), name, settings))
-          return *std::move(field);
-    } catch (const std::exception&) {
-      // Unreadable: treated as absent.
-    }
-  DistanceField field(mesh, settings, threads, progress);
-  if (!cache.empty()) try {
-      make_folder(cache);
-      write_file(file, field.to_bytes(name));
-    } catch (const std::exception&) {
-      // Failure to write the cache only costs time.
-    }
-  return field;
+  return stored_field(cache, name_of(mesh, settings), settings,
+                      [&] { return DistanceField(mesh, settings, threads, progress); });
+}
+
+DistanceField cached_piece_field(const fs::path& cache, const TriMesh& piece, const TriMesh& uncut,
+                                 const DistanceField& uncut_field, int threads,
+                                 const Progress& progress) {
+  const FieldSettings& settings = uncut_field.settings();
+  // Its samples follow from the piece and the grid.
+  const std::uint64_t grid = uncut_field.grid_hash();
+  const std::uint64_t name =
+      hash_values(std::span<const std::uint64_t>(&grid, 1), name_of(piece, settings));
+  return stored_field(cache, name, settings,
+                      [&] { return DistanceField(piece, uncut, uncut_field, threads, progress); });
 }
 
 fs::path field_cache_folder() {

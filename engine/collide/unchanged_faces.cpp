@@ -13,15 +13,14 @@ namespace {
 
 using Corners = std::array<double, 9>;
 
-/// The corners of a triangle, the least of them first.
+/// The corners of a triangle, in its order: from another first corner distances are rounded
+/// differently.
 Corners corners_of(const TriMesh& mesh, const Eigen::Vector3i& triangle) {
-  std::array<std::array<double, 3>, 3> v;
-  for (int k = 0; k < 3; ++k) {
-    const Eigen::Vector3d& p = mesh.vertices[static_cast<std::size_t>(triangle[k])];
-    v[static_cast<std::size_t>(k)] = {p.x(), p.y(), p.z()};
-  }
-  std::rotate(v.begin(), std::min_element(v.begin(), v.end()), v.end());
-  return {v[0][0], v[0][1], v[0][2], v[1][0], v[1][1], v[1][2], v[2][0], v[2][1], v[2][2]};
+  Corners corners;
+  for (std::size_t k = 0; k < 9; ++k)
+    corners[k] = mesh.vertices[static_cast<std::size_t>(triangle[static_cast<int>(k / 3)])]
+                              [static_cast<int>(k % 3)];
+  return corners;
 }
 
 /// The triangles of some shells, to be found by their corners.

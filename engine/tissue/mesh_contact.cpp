@@ -66,8 +66,9 @@ ContactObstacle::ContactObstacle(const TriMesh& mesh, const Box& region,
       surface_(mesh) {}
 
 ContactObstacle::ContactObstacle(const TriMesh& piece, const TriMesh& uncut,
-                                 const ContactObstacle& of_uncut, int threads)
-    : field_(piece, uncut, of_uncut.field_, threads), surface_(piece) {}
+                                 const ContactObstacle& of_uncut,
+                                 const std::filesystem::path& cache, int threads)
+    : field_(cached_piece_field(cache, piece, uncut, of_uncut.field_, threads)), surface_(piece) {}
 
 bool ContactObstacle::near(const Vector3d& p, double reach, Near& near) const {
   const DistanceField::Spot spot = field_.spot(p);

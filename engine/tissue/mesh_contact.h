@@ -26,9 +26,9 @@ class ContactObstacle {
   ContactObstacle(const TriMesh& mesh, const Box& region, const std::filesystem::path& cache,
                   int threads = 1);
 
-  /// A piece of the mesh of another obstacle that was cut: computed faster, and not cached.
+  /// The same of a piece of the mesh of another obstacle that was cut, computed faster.
   ContactObstacle(const TriMesh& piece, const TriMesh& uncut, const ContactObstacle& of_uncut,
-                  int threads = 1);
+                  const std::filesystem::path& cache, int threads = 1);
 
   struct Near {
     double distance = 0;     // mm, negative inside

@@ -214,7 +214,8 @@ Obstacle make_piece_obstacle(const TissueContact& contact, const Nodes& rest,
   Obstacle made;
   made.body = piece.body;
   made.extent = bounding_box(piece.mesh);
-  made.surface = std::make_shared<ContactObstacle>(piece.mesh, uncut, *of_uncut.surface, threads);
+  made.surface = std::make_shared<ContactObstacle>(piece.mesh, uncut, *of_uncut.surface,
+                                                   field_cache_folder(), threads);
   fit_to_rest(contact, rest, shift, made);
   return made;
 }

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
+#include <iterator>
 #include <random>
 #include <vector>
 
@@ -10,6 +12,7 @@
 #include "engine/mesh/tri_mesh.h"
 #include "engine/mesh/triangle_tree.h"
 #include "tests/support/builtin.h"
+#include "tests/support/program.h"
 #include "tests/support/shapes.h"
 
 namespace condyle {
@@ -31,10 +34,10 @@ TriMesh together(TriMesh mesh, const TriMesh& other) {
 void expect_same_field(const TriMesh& piece, const TriMesh& uncut, const DistanceField& of_uncut) {
   TriMesh elsewhere = uncut;
   for (auto& vertex : elsewhere.vertices) vertex += Vector3d(500, 0, 0);
-  const DistanceField copied(piece, uncut, of_uncut, 2);
   const DistanceField computed(piece, elsewhere, of_uncut, 2);
-  EXPECT_GT(copied.brick_count(), 100U);
-  EXPECT_EQ(copied.hash(), computed.hash());
+  EXPECT_GT(computed.brick_count(), 100U);
+  for (const int threads : {1, 2})
+    EXPECT_EQ(DistanceField(piece, uncut, of_uncut, threads).hash(), computed.hash()) << threads;
 }
 
 /// Within 4 mm of a point the field has the distances of the piece, but for the error of
@@ -99,6 +102,23 @@ TEST(PieceField, OfAJawWithItsTeethIsThatOfThePieceAlone) {
   ASSERT_GE(result.pieces.size(), 2U);
   for (const Piece& piece : result.pieces) expect_same_field(piece.mesh, jaw, whole);
   expect_same_field(together(result.pieces[0].mesh, teeth), jaw, whole);
+}
+
+TEST(PieceField, IsReadFromTheCacheWithTheSameBits) {
+  const TriMesh ball = test::sphere(4, 20);
+  const DistanceField whole(ball, settings, 2);
+  const std::vector<Cut> cuts{{"flat", Region::above({Vector3d::UnitZ(), 5}, 3), {}, 0.5}};
+  const TriMesh piece = cut_bone(ball, cuts).pieces[0].mesh;
+  const test::Folder cache;
+  const auto made = cached_piece_field(cache.path(), piece, ball, whole);
+  const auto read = cached_piece_field(cache.path(), piece, ball, whole);
+  EXPECT_EQ(made.hash(), DistanceField(piece, ball, whole).hash());
+  EXPECT_EQ(made.hash(), read.hash());
+  // On another grid it is another field.
+  const DistanceField smaller(ball, {.spacing_mm = 0.5, .band_mm = 1, .region = {}});
+  EXPECT_NE(cached_piece_field(cache.path(), piece, ball, smaller).hash(), made.hash());
+  const auto files = std::filesystem::directory_iterator(cache.path());
+  EXPECT_EQ(std::distance(begin(files), end(files)), 2);
 }
 
 TEST(PieceField, OfAnOpenSurfaceIsComputed) {
