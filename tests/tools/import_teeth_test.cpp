@@ -48,6 +48,35 @@ TEST(ImportTeeth, ScansReplaceTheCrownsOrMakeACaseAlone) {
   EXPECT_LT(found["moved_from_start_mm"].get<double>(), 0.3);
 }
 
+TEST(ImportTeeth, ASegmentIsPlacedByTheScannedBite) {
+  const Folder folder;
+  const auto done = [](const std::vector<std::string>& arguments) {
+    const Outcome outcome = condyle(arguments);
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+  };
+  const std::string plan = folder / "plan.json", teeth = folder / "teeth";
+  done({"sample", "--out", folder / "sample"});
+  done({"import", "teeth", "built-in:class-iii", "--upper", folder / "sample/upper.stl", "--lower",
+        folder / "sample/lower.stl", "--out", teeth});
+  done({"plan", "new", teeth, "--out", plan});
+  done({"plan", "cut", plan, "sagittal_split", "--case", teeth, "--below-margins"});
+  done({"plan", "occlude", plan, "distal", "--case", teeth, "--scanned-bite"});
+  const auto scanned = nlohmann::json::parse(read_text(folder / "teeth/case.json"))["bite"];
+  const auto placed = nlohmann::json::parse(read_text(plan))["steps"][1]["move"];
+  for (std::size_t k = 0; k < 3; ++k)
+    EXPECT_NEAR(placed["translation_mm"][k], scanned["translation_mm"][k].get<double>(), 0.3);
+  for (std::size_t k = 0; k < 4; ++k)
+    EXPECT_NEAR(placed["rotation"][k], scanned["rotation"][k].get<double>(), 0.003);
+  EXPECT_GT(placed["translation_mm"][1].get<double>(), 4) << "the lower jaw is set back";
+
+  // Without scans there is none.
+  const std::string other = folder / "other.json";
+  done({"plan", "new", "built-in:class-iii", "--out", other});
+  done({"plan", "cut", other, "sagittal_split", "--below-margins"});
+  expect_refusal(condyle({"plan", "occlude", other, "distal", "--scanned-bite"}),
+                 "holds no scanned bite");
+}
+
 TEST(ImportTeeth, WrongFilesAreRefusedAndNothingIsWritten) {
   const Folder folder;
   write_text(folder / "empty.stl", "");
