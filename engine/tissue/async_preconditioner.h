@@ -8,8 +8,8 @@
 namespace condyle {
 
 /// The preconditioner of a sequence of frames, recomputed asynchronously: started at the end of one
-/// frame, it is used from a later frame on that its size determines, late enough that no frame has
-/// to wait for it. Results therefore do not depend on timing. A value that belongs to the state of
+/// frame, it is used from a later frame on that its size determines, late enough that frames seldom
+/// wait for it. Results therefore do not depend on timing. A value that belongs to the state of
 /// a frame: continuing from a copy gives identical frames.
 class AsyncPreconditioner {
  public:
@@ -37,7 +37,7 @@ class AsyncPreconditioner {
              std::shared_ptr<const void> owner);
   /// Waits for the pending factor, or computes it: for use between frames with a single thread.
   void finish() const {
-    if (next_.valid()) next_.wait();
+    if (next_.valid() && !superseded_) next_.wait();
   }
 
  private:
@@ -45,7 +45,7 @@ class AsyncPreconditioner {
   std::shared_future<std::shared_ptr<const HessianFactor>> next_;
   int frames_left_ = 0;
   int iterations_ = 0;
-  bool superseded_ = false;  // the pending factor: a newer one is in use
+  bool superseded_ = false;  // the pending factor, by a newer one: dropped when due
 };
 
 }  // namespace condyle

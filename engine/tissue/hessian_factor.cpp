@@ -52,8 +52,8 @@ void HessianFactor::solve(const Nodes& g, Nodes& z) const {
 }
 
 double HessianFactor::iterations_per_factorization() const {
-  // Measured on 2,000 to 100,000 nodes: 13 to 61 iterations, as the multiplications per number of
-  // the factor, which each solve reads twice. Elements and assembly take as long in both.
+  // Measured on 2,000 to 100,000 nodes: 13 to 61 iterations, about proportional to multiplications
+  // over numbers in the factor, of which a solve reads each twice.
   constexpr double least = 8, per_multiplication = 0.1;
   const FrontTree& tree = *pattern_->tree;
   return least +

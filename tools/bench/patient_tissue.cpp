@@ -84,6 +84,8 @@ Json patient_frames(const Case& patient, const TissueModel& tissue, const std::v
                 threads);
     add_errors(rest, is, should, errors);
   }
+  if (errors.empty())
+    throw InputError(patient.name + ": no vertex of the face moves by more than 1 mm");
   const TissueSummary made = summary(tissue);
   const double error_mm = quantiles(errors).p95;
   Json row = timing_json({"patient.tissue", made.nodes, threads, "condyle"}, quantiles(wall),
