@@ -21,6 +21,7 @@ namespace condyle {
 
 struct ParallelRenderers::State {
   std::span<const Part> parts;
+  std::shared_ptr<const BeforeOperation> operation;
   std::mutex mutex;
   std::condition_variable changed;
   std::deque<std::pair<std::int64_t, Draw>> waiting;  // numbered in order of submission
@@ -36,7 +37,8 @@ struct ParallelRenderers::State {
   const SceneRenderer* first = nullptr;
   std::vector<std::thread> threads;
 
-  explicit State(std::span<const Part> all) : parts(all) {}
+  State(std::span<const Part> all, std::shared_ptr<const BeforeOperation> before)
+      : parts(all), operation(std::move(before)) {}
 
   /// The error of the earliest failed picture.
   void keep_trouble(std::int64_t number) {
@@ -59,7 +61,7 @@ struct ParallelRenderers::State {
       if (drawer > 0 && context->shares_display())
         throw MachineError("no display is free for another context");
       if (drawer == 0)
-        renderer.emplace(parts);
+        renderer.emplace(parts, operation);
       else
         renderer.emplace(*first);
     } catch (...) {
@@ -120,8 +122,9 @@ struct ParallelRenderers::State {
   }
 };
 
-ParallelRenderers::ParallelRenderers(std::span<const Part> parts, int most)
-    : state_(std::make_unique<State>(parts)) {
+ParallelRenderers::ParallelRenderers(std::span<const Part> parts, int most,
+                                     std::shared_ptr<const BeforeOperation> operation)
+    : state_(std::make_unique<State>(parts, std::move(operation))) {
   auto& s = *state_;
   const auto start = [&](int drawer) {
     try {

@@ -20,9 +20,10 @@ class ParallelRenderers {
   using Deliver = std::function<void()>;
   using Draw = std::function<Deliver(SceneRenderer& renderer, int drawer)>;
 
-  /// The parts must outlive it. most: maximum number of threads.
+  /// The parts must outlive it. most: maximum number of threads. operation: see SceneRenderer.
   /// throws: MachineError when nothing can draw.
-  explicit ParallelRenderers(std::span<const Part> parts, int most = 2);
+  explicit ParallelRenderers(std::span<const Part> parts, int most = 2,
+                             std::shared_ptr<const BeforeOperation> operation = {});
   /// Draws and delivers all submitted pictures, unless one threw.
   ~ParallelRenderers();
   ParallelRenderers(const ParallelRenderers&) = delete;

@@ -110,23 +110,11 @@ FrameRenderer::FrameRenderer(const PicturePlan& plan, const RecordingFiles& file
   if (plan_.overlays.muscles) muscles_ = muscles_of(patient);
   if (subject.settings.face) carry_face(subject.scene, rest_, subject.settings.threads);
   if (plan_.window && plan_.window->before) rest_ = *plan_.window->before;
-  const BeforeOperation* operation = plan_.window ? plan_.window->operation.get() : nullptr;
-  std::span<const Part> parts = patient.parts;
-  if (operation && !operation->removed.empty()) {
-    parts_ = patient.parts;
-    parts_.insert(parts_.end(), operation->removed.begin(), operation->removed.end());
-    parts = parts_;
-  }
 
   for (PlannedView& planned : planned_views(plan_, files, subject)) {
-    View view{std::move(planned.camera), plan_.settings, {}, nullptr};
+    View view{std::move(planned.camera), plan_.settings, nullptr};
     if (const auto* arch = view.camera.arch())
       for (const auto& [part, opacity] : arch->hidden()) view.settings.part_opacity[part] = opacity;
-    view.of_rest = view.settings;
-    if (operation) {
-      hide_removed(*operation, view.settings);
-      hide_added(*operation, view.of_rest);
-    }
     view.recorder = std::make_unique<Recorder>(planned.recorder);
     kept_ += view.recorder->kept_frames();
     views_.push_back(std::move(view));
@@ -138,7 +126,8 @@ FrameRenderer::FrameRenderer(const PicturePlan& plan, const RecordingFiles& file
   constexpr double max_pixels_for_two = 1.7e7;
   const double pixels = static_cast<double>(plan_.settings.width) * plan_.settings.height *
                         plan_.settings.supersampling * plan_.settings.supersampling;
-  drawers_.emplace(parts, mapped || pixels > max_pixels_for_two ? 1 : 2);
+  drawers_.emplace(patient.parts, mapped || pixels > max_pixels_for_two ? 1 : 2,
+                   plan_.window ? plan_.window->operation : nullptr);
   const PictureSettings& size = plan_.settings;
   if (const int most = drawers_->max_side() / size.supersampling;
       size.width > most || size.height > most)
@@ -230,8 +219,10 @@ Image FrameRenderer::picture(const View& view, const Camera& camera, const Shot&
   Image image = drawn(view.settings, camera, shot, true);
   if (plan_.wipe) {
     const Overlays still = overlays_of(rest_, false);
-    image = wiped(drawn(view.of_rest, camera, {shot.renderer, shot.desk, rest_, still}, true),
-                  image, *plan_.wipe, plan_.settings.backdrop);
+    PictureSettings of_rest = view.settings;
+    of_rest.before_operation = plan_.window && plan_.window->operation;
+    image = wiped(drawn(of_rest, camera, {shot.renderer, shot.desk, rest_, still}, true), image,
+                  *plan_.wipe, plan_.settings.backdrop);
     notes.line_at = *plan_.wipe;
   }
   add_key(image, shot.desk.words, shot.overlays.key, plan_.settings.backdrop);

@@ -64,7 +64,7 @@ class FrameRenderer {
  private:
   struct View {
     RecordingCamera camera;
-    PictureSettings settings, of_rest;  // of_rest: of the state left of a wipe
+    PictureSettings settings;
     std::unique_ptr<Recorder> recorder;
   };
   /// Data of one drawing thread.
@@ -96,8 +96,7 @@ class FrameRenderer {
 
   const RecordingSubject subject_;
   PicturePlan plan_;
-  FrameState rest_;          // left of a wipe
-  std::vector<Part> parts_;  // of the patient, with those that the plan's operation removes
+  FrameState rest_;  // left of a wipe
   MotionPaths paths_;
   std::vector<Muscle> muscles_;  // the ones that are drawn
   std::vector<View> views_;

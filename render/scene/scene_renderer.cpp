@@ -54,8 +54,9 @@ struct SceneRenderer::State {
   std::span<const Part> parts;
   Passes passes;
   OverlayPasses overlays;
-  std::vector<Drawable> drawables;
-  Eigen::AlignedBox3f box;  // of all parts at rest
+  std::shared_ptr<const BeforeOperation> operation;
+  std::vector<Drawable> drawables;  // of the parts, then of those that the operation removed
+  Eigen::AlignedBox3f box;          // of all parts at rest
   float mouth_y;
   // For eye drawables by number, once the skin was not opaque: the balls, and the lashes, which
   // belong to the skin.
@@ -79,18 +80,23 @@ struct SceneRenderer::State {
   PictureTarget target;
   float map_low = 0, map_high = 1;  // values are clamped to this range
 
-  State(std::shared_ptr<const PreparedParts> all, std::vector<Drawable> made)
+  State(std::shared_ptr<const PreparedParts> all, std::shared_ptr<const BeforeOperation> before,
+        std::vector<Drawable> made)
       : patient(std::move(all)),
         parts(patient->patient()),
+        operation(std::move(before)),
         drawables(std::move(made)),
-        mouth_y(front_of_mouth(drawables)),
+        mouth_y(front_of_mouth(present())),
         lower_jaw(lower_jaw_of(parts)) {
     for (const auto& drawable : drawables) box.extend(drawable.box);
     if (box.isEmpty()) box = Eigen::AlignedBox3f(Eigen::Vector3f::Zero());
     place({});
   }
 
+  std::span<Drawable> present() { return std::span(drawables).first(parts.size()); }
   void place(const BodyPoses& at);
+  /// The part whose opacity a drawable has; null where it is not there.
+  const std::string* shown_as(std::size_t drawable, bool before) const;
 
   std::vector<DrawItem> items(const PictureSettings& settings);
   void part_lashes_from(std::vector<DrawItem>& items);
@@ -107,8 +113,10 @@ std::vector<DrawItem> SceneRenderer::State::items(const PictureSettings& setting
   for (std::size_t i = 0; i < drawables.size(); ++i) {
     auto& drawable = drawables[i];
     const auto& part = *drawable.part;
+    const std::string* name = shown_as(i, settings.before_operation);
+    if (!name) continue;
     double opacity = part.role == Role::face ? settings.skin_opacity : 1;
-    if (const auto own = settings.part_opacity.find(part.name); own != settings.part_opacity.end())
+    if (const auto own = settings.part_opacity.find(*name); own != settings.part_opacity.end())
       opacity *= own->second;
     if (part.mesh.empty() || !(opacity >= nearly_hidden)) continue;
     DrawItem item{&drawable, opacity > nearly_opaque ? 1.0 : opacity, matrix_of(poses[i])};
@@ -120,6 +128,13 @@ std::vector<DrawItem> SceneRenderer::State::items(const PictureSettings& setting
   part_lashes_from(found);
   keep_beneath_skin(found);
   return found;
+}
+
+const std::string* SceneRenderer::State::shown_as(std::size_t drawable, bool before) const {
+  if (drawable >= parts.size())
+    return before ? &operation->removed[drawable - parts.size()].shown_as : nullptr;
+  const std::string& name = parts[drawable].name;
+  return before && operation && names(operation->added, name) ? nullptr : &name;
 }
 
 void SceneRenderer::State::keep_beneath_skin(std::vector<DrawItem>& items) {
@@ -184,9 +199,9 @@ void SceneRenderer::State::place(const BodyPoses& at) {
   poses.clear();
   reached = box;
   for (std::size_t i = 0; i < drawables.size(); ++i) {
-    poses.push_back(pose_of(parts[i], at));
-    if (parts[i].body == cranium_body || parts[i].body == lower_jaw || drawables[i].box.isEmpty())
-      continue;
+    const Part& part = *drawables[i].part;
+    poses.push_back(pose_of(part, at));
+    if (part.body == cranium_body || part.body == lower_jaw || drawables[i].box.isEmpty()) continue;
     reached.extend(DrawItem{&drawables[i], 1, matrix_of(poses[i])}.box());
   }
 }
@@ -281,16 +296,24 @@ PictureView SceneRenderer::State::view(const Camera& camera, const PictureSettin
   return v;
 }
 
-SceneRenderer::SceneRenderer(std::span<const Part> patient) {
+SceneRenderer::SceneRenderer(std::span<const Part> patient,
+                             std::shared_ptr<const BeforeOperation> operation) {
   auto prepared = std::make_shared<const PreparedParts>(patient);
   std::vector<const Part*> drawn;
   for (const auto& part : patient) drawn.push_back(&prepared->drawn(part));
   auto drawables = make_drawables(drawn, prepared->lining());
-  state_ = std::make_unique<State>(std::move(prepared), std::move(drawables));
+  if (operation) {
+    // Their shade is their own: the present state does not lie in it.
+    std::vector<const Part*> removed;
+    for (const RemovedPart& each : operation->removed) removed.push_back(&each.part);
+    for (Drawable& drawable : make_drawables(removed, nullptr))
+      drawables.push_back(std::move(drawable));
+  }
+  state_ = std::make_unique<State>(std::move(prepared), std::move(operation), std::move(drawables));
 }
 
 SceneRenderer::SceneRenderer(const SceneRenderer& other)
-    : state_(std::make_unique<State>(other.state_->patient,
+    : state_(std::make_unique<State>(other.state_->patient, other.state_->operation,
                                      drawables_like(other.state_->drawables))) {}
 
 SceneRenderer::~SceneRenderer() = default;
@@ -334,13 +357,13 @@ void SceneRenderer::set_colour_map(const ColourMap& map) {
 
 void SceneRenderer::set_finer(const std::string& name, const TriMesh& surface,
                               std::span<const Eigen::Vector3f> normals) {
-  for (auto& drawable : state_->drawables)
+  for (auto& drawable : state_->present())
     if (drawable.part->name == name) drawable.set_finer(surface, normals);
 }
 
 void SceneRenderer::color_part(const std::string& name, std::span<const float> values) {
   auto& s = *state_;
-  for (auto& drawable : s.drawables) {
+  for (auto& drawable : s.present()) {
     if (drawable.part->name != name) continue;
     std::vector<float> kept(values.begin(), values.end());
     // Clamped near the range, so that the interpolation from a far vertex to a near one passes
@@ -487,14 +510,6 @@ Image SceneRenderer::picture(const Camera& camera, const PictureSettings& settin
           static_cast<std::uint8_t>(std::min(255, (image.rgba[k] * 255 + alpha / 2) / alpha));
   }
   return image;
-}
-
-void hide_added(const BeforeOperation& operation, PictureSettings& settings) {
-  for (const std::string& name : operation.added) settings.part_opacity[name] = 0;
-}
-
-void hide_removed(const BeforeOperation& operation, PictureSettings& settings) {
-  for (const Part& part : operation.removed) settings.part_opacity[part.name] = 0;
 }
 
 }  // namespace condyle

@@ -25,8 +25,9 @@ struct PictureSettings {
   int width = 1280, height = 720;
   int samples = 4;  // of multisampling; limited by the context
   bool shadows = true;
-  bool coarse = false;   // shapes within 0.2 mm, for fast pictures
-  bool contacts = true;  // mark contact points
+  bool coarse = false;            // shapes within 0.2 mm, for fast pictures
+  bool contacts = true;           // mark contact points
+  bool before_operation = false;  // with the parts that an operation removed, without its grafts
   Backdrop backdrop = Backdrop::dark;
   bool transparent = false;                    // no backdrop
   double skin_opacity = 1.0;                   // 0 hides the face
@@ -47,15 +48,13 @@ struct PictureSettings {
   int supersampling = 1;      // drawn this many times as wide and high, then averaged; 1 to 4
 };
 
-/// Hides the parts that were not there before an operation, or those that it removes.
-void hide_added(const BeforeOperation& operation, PictureSettings& settings);
-void hide_removed(const BeforeOperation& operation, PictureSettings& settings);
-
 /// Draws a case at a frame. Needs a current OpenGL 3.3 core context for its lifetime.
 class SceneRenderer {
  public:
-  /// Uploads every part once. The parts must outlive the renderer.
-  explicit SceneRenderer(std::span<const Part> patient);
+  /// Uploads every part once. The parts must outlive the renderer. `operation`: after which the
+  /// patient is shown, for pictures of the state before it.
+  explicit SceneRenderer(std::span<const Part> patient,
+                         std::shared_ptr<const BeforeOperation> operation = {});
   /// The same parts at rest for another context: computed data is copied. The other renderer must
   /// be unchanged since construction, and idle.
   explicit SceneRenderer(const SceneRenderer& other);

@@ -56,11 +56,12 @@ std::uint64_t shown_hash(const ViewRecording& subject, const PicturePlan& plan) 
   };
   Json shown;
   // Complete: a new field does not compile until it is added here.
-  const auto& [width, height, samples, shadows, coarse, contacts, backdrop, transparent,
-               skin_opacity, part_opacity, clip, cut_away, ghost, wireframe, mapped_up_to, from_x,
-               to_x, smooth_edges, supersampling] = plan.settings;
+  const auto& [width, height, samples, shadows, coarse, contacts, before_operation, backdrop,
+               transparent, skin_opacity, part_opacity, clip, cut_away, ghost, wireframe,
+               mapped_up_to, from_x, to_x, smooth_edges, supersampling] = plan.settings;
   shown["picture"] = {
-      {samples, shadows, coarse, contacts, backdrop, transparent, skin_opacity, from_x, to_x},
+      {samples, shadows, coarse, contacts, before_operation, backdrop, transparent, skin_opacity,
+       from_x, to_x},
       {smooth_edges, supersampling, part_opacity, wireframe, mapped_up_to.value_or(-1)}};
   if (clip) shown["clip"] = {list(clip->point), list(clip->normal), clip->capped, clip->parts};
   if (cut_away) shown["cut"] = {list(cut_away->center), cut_away->radius_mm, cut_away->parts};
@@ -75,7 +76,8 @@ std::uint64_t shown_hash(const ViewRecording& subject, const PicturePlan& plan) 
     shown["kept"] = {kept->state_hash,
                      pose(kept->poses[subject.patient->scene.patient.jaw.lower_arch])};
   if (const auto& operation = plan.window->operation) {
-    for (const Part& part : operation->removed) shown["removed"].push_back(mesh_hash(part.mesh));
+    for (const RemovedPart& removed : operation->removed)
+      shown["removed"].push_back(mesh_hash(removed.part.mesh));
     shown["added"] = operation->added;
   }
   const auto overlaid = OverlayInputs::of(subject.view, subject.paths);

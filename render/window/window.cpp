@@ -38,15 +38,11 @@ void fit_to_screen(int& width, int& height) {
   if (high > 0) height = std::min(height, static_cast<int>(static_cast<float>(high) / scale_y));
 }
 
-/// What a scene draws: also the parts that an operation removes.
+/// What a scene draws.
 std::shared_ptr<const DrawnParts> drawn_parts(const WindowScene& scene,
                                               std::shared_ptr<const void> keeper) {
-  if (!scene.before || scene.before->removed.empty())
-    return std::make_shared<DrawnParts>(
-        DrawnParts{scene.parts, scene.distance_colours, std::move(keeper)});
-  const auto all = std::make_shared<std::vector<Part>>(scene.parts.begin(), scene.parts.end());
-  all->insert(all->end(), scene.before->removed.begin(), scene.before->removed.end());
-  return std::make_shared<DrawnParts>(DrawnParts{*all, scene.distance_colours, all});
+  return std::make_shared<DrawnParts>(
+      DrawnParts{scene.parts, scene.distance_colours, scene.before, std::move(keeper)});
 }
 
 }  // namespace

@@ -295,7 +295,6 @@ void Window::State::request_picture() {
   render_request.moving = moving();
   render_request.quality = pacing.governor.choose(render_request.moving);
   render_request.beside = view.look.wipe && render_request.frame ? comparison.frame : nullptr;
-  render_request.operation = scene.before;
   render_request.before_is_beside = comparison.before != nullptr;
   render_request.wipe_at = view.look.wipe_at;
   render_request.beside_values = render_request.beside ? comparison.values : nullptr;

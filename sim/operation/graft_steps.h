@@ -7,8 +7,8 @@
 
 namespace condyle {
 
-/// Takes a segment with its teeth, canals and rules from the patient into `operated.resections`. A
-/// segment that does not exist is a problem.
+/// Takes a segment with its teeth, gums, canals and rules from the patient into
+/// `operated.resections`. A segment that does not exist is a problem.
 void resect_segment(Operated& operated, const PlanStep& step);
 
 /// Adds the pieces of a graft to the patient: the first hangs on the bone at the first face of the

@@ -57,6 +57,21 @@ std::shared_ptr<const SessionPatient> completed_patient(SessionPatient patient, 
   return made;
 }
 
+namespace {
+
+/// What remains of a kind of part where some was resected, else of its bone.
+std::string shown_with(const Operated& operated, const Resection& resection, Role role) {
+  for (const Part& part : operated.patient.parts)
+    if (part.role == role && role != Role::segment) return part.name;
+  for (const Part& part : operated.patient.parts)
+    if (const auto origin = operated.origin.find(part.name);
+        origin != operated.origin.end() && origin->second.part == resection.origin.part)
+      return part.name;
+  return {};
+}
+
+}  // namespace
+
 std::optional<BeforeOperation> before_operation(const SessionPatient& patient) {
   const Operated& operated = *patient.operated;
   const auto& planned = operated.poses.X_CB;
@@ -64,7 +79,8 @@ std::optional<BeforeOperation> before_operation(const SessionPatient& patient) {
   for (const Resection& resection : operated.resections)
     for (Part part : resection.parts) {
       part.body = cranium_body;
-      before.removed.push_back(std::move(part));
+      std::string shown_as = shown_with(operated, resection, part.role);
+      before.removed.push_back({std::move(part), std::move(shown_as)});
     }
   for (const GraftLayout& graft : operated.grafts)
     for (const GraftPiece& piece : graft.pieces)

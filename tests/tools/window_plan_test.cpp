@@ -66,15 +66,24 @@ TEST_F(WindowSession, AGenioplastyIsPlannedByHand) {
   EXPECT_EQ(read_text(file), before);
 }
 
-/// Pixels of a region with much more green than red.
-int green_pixels(const Picture& picture, const Region& region) {
+int count_pixels(const Picture& picture, const Region& region,
+                 const std::function<bool(const std::uint8_t* rgba)>& counts) {
   int count = 0;
   for (int y = int(region.y); y < int(region.y + region.height); ++y)
-    for (int x = int(region.x); x < int(region.x + region.width); ++x) {
-      const std::uint8_t* p = &picture.rgba[4 * (std::size_t(y) * picture.width + x)];
-      count += p[1] > p[0] + 20;
-    }
+    for (int x = int(region.x); x < int(region.x + region.width); ++x)
+      count += counts(&picture.rgba[4 * (std::size_t(y) * picture.width + x)]);
   return count;
+}
+
+/// Pixels with much more green than red.
+int green_pixels(const Picture& picture, const Region& region) {
+  return count_pixels(picture, region, [](const std::uint8_t* p) { return p[1] > p[0] + 20; });
+}
+
+/// Pixels of gums.
+int pink_pixels(const Picture& picture, const Region& region) {
+  return count_pixels(picture, region,
+                      [](const std::uint8_t* p) { return p[0] > p[1] + 60 && p[2] > 60; });
 }
 
 TEST_F(WindowSession, LeftOfTheWipeResectedBoneIsThereAndItsGraftIsNot) {
@@ -115,6 +124,9 @@ TEST_F(WindowSession, LeftOfTheWipeResectedBoneIsThereAndItsGraftIsNot) {
   EXPECT_GT(difference(uncut, now, right_side), 0.005);
   EXPECT_GT(green_pixels(now, right_side), 200) << "the graft";
   EXPECT_EQ(green_pixels(seen_, right_side), 0);
+  // The gums, which were resected with the bone, are there again.
+  EXPECT_LT(pink_pixels(now, right_side), 0.8 * pink_pixels(uncut, right_side));
+  EXPECT_GT(pink_pixels(seen_, right_side), 0.95 * pink_pixels(uncut, right_side));
 
   // So it is in a recording.
   click("tab:Record");

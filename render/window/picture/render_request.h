@@ -20,7 +20,8 @@ namespace condyle {
 struct DrawnParts {
   std::span<const Part> parts = {};
   std::optional<ColourMap> colours = {};
-  std::shared_ptr<const void> keeper = {};  // keeps the parts alive
+  std::shared_ptr<const BeforeOperation> operation = {};  // after which they are shown
+  std::shared_ptr<const void> keeper = {};                // keeps the parts alive
 };
 
 /// Finer surfaces of parts, for colours by values.
@@ -31,15 +32,14 @@ struct DrawnMap {
 
 /// The content of one picture. Large data is shared and immutable: other data has another pointer.
 struct RenderRequest {
-  std::shared_ptr<const DrawnParts> parts = {};           // none: nothing is drawn
-  std::shared_ptr<const FrameState> frame = {};           // none: at rest
-  std::shared_ptr<const FrameState> beside = {};          // left of a wipe; none: no wipe
-  double wipe_at = 0.5;                                   // fraction of the width
-  std::shared_ptr<const BeforeOperation> operation = {};  // whose removed parts are drawn too
-  bool before_is_beside = false;                          // the state beside is the one before it
-  std::shared_ptr<const DrawnMap> map = {};               // none: the parts' own surfaces
-  std::shared_ptr<const MapValues> values = {};           // of the map's surfaces; none: no colours
-  std::shared_ptr<const MapValues> beside_values = {};    // the same of the state beside
+  std::shared_ptr<const DrawnParts> parts = {};   // none: nothing is drawn
+  std::shared_ptr<const FrameState> frame = {};   // none: at rest
+  std::shared_ptr<const FrameState> beside = {};  // left of a wipe; none: no wipe
+  double wipe_at = 0.5;                           // fraction of the width
+  bool before_is_beside = false;                 // the state beside is the one before the operation
+  std::shared_ptr<const DrawnMap> map = {};      // none: the parts' own surfaces
+  std::shared_ptr<const MapValues> values = {};  // of the map's surfaces; none: no colours
+  std::shared_ptr<const MapValues> beside_values = {};  // the same of the state beside
   bool displacement = false;                      // the face coloured by its displacement from rest
   std::shared_ptr<const Overlays> overlays = {};  // none: the parts alone
   Camera camera = {};

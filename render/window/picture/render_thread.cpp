@@ -28,7 +28,7 @@ struct RenderThread::Drawing {
       overlays = {};
       applied = {.parts = request.parts};  // also if the upload fails: it is tried once
       if (request.parts) {
-        renderer.emplace(request.parts->parts);
+        renderer.emplace(request.parts->parts, request.parts->operation);
         if (request.parts->colours) renderer->set_colour_map(*request.parts->colours);
       }
     }

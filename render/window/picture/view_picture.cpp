@@ -40,16 +40,6 @@ std::optional<DrawnPicture> ViewPicture::draw(SceneRenderer& renderer, const Ren
   settings.shadows = settings.shadows && quality.shadows;
   auto& target = state_->target;
   target.fit(settings.width, settings.height, quality.samples, quality.samples <= 1);
-  const auto show_side = [&](bool beside) {
-    settings.part_opacity = request.settings.part_opacity;
-    if (!request.operation) return;
-    if (beside && request.before_is_beside) {
-      hide_added(*request.operation, settings);
-    } else {
-      hide_removed(*request.operation, settings);
-    }
-  };
-  show_side(false);
   DrawnBox box = renderer.drawn_box(request.camera, settings);
   const auto draw_part = [&](double from_x, double to_x) {
     settings.from_x = from_x;
@@ -63,11 +53,11 @@ std::optional<DrawnPicture> ViewPicture::draw(SceneRenderer& renderer, const Ren
     turn_to(false);
     box = renderer.drawn_box(request.camera, settings);
     turn_to(true);
-    show_side(true);
+    settings.before_operation = request.before_is_beside;
     box = box.around(renderer.drawn_box(request.camera, settings));
     draw_part(0, request.wipe_at);
     turn_to(false);
-    show_side(false);
+    settings.before_operation = false;
     draw_part(request.wipe_at, 1);
   } else {
     const double pixels = static_cast<double>(settings.width) * settings.height;

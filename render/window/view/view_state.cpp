@@ -53,13 +53,6 @@ std::map<std::string, double> part_opacities(const WindowScene& scene, const Vie
   std::map<std::string, double> opacities;
   for (std::size_t i = 0; i < scene.parts.size() && i < view.parts.size(); ++i)
     opacities[scene.parts[i].name] = view.parts[i].shown ? view.parts[i].opacity : 0;
-  if (scene.before)
-    for (const Part& removed : scene.before->removed)  // as what remains of its kind
-      for (const Part& part : scene.parts)
-        if (part.role == removed.role) {
-          opacities[removed.name] = opacities[part.name];
-          break;
-        }
   return opacities;
 }
 
