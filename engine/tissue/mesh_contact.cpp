@@ -327,7 +327,7 @@ ContactSolveResult solve_contact(const std::function<ContactLists(const Nodes&)>
                                  const std::function<Solved()>& solve, MeshLoads& loads, Nodes& x,
                                  const ContactSolveSettings& settings, const ContactLists& before) {
   // Planes that have not converged by then may oscillate between two directions.
-  constexpr int undamped_searches = 2;
+  const int undamped_searches = settings.damped ? 0 : 2;
   ContactSolveResult result;
   ContactLists used = query(x);
   for (std::size_t i = 0; i < before.size(); ++i)

@@ -135,6 +135,7 @@ struct ContactSolveSettings {
   double gap_mm = 0.03;        // largest distance between a pressed point and its surface
   double rough_mm = 0.1;       // both tolerances once the budget is spent
   bool relaxed = false;        // see with_history()
+  bool damped = false;         // planes are rotated towards earlier ones from the first search on
 };
 struct ContactSolveResult {
   int solves = 0;

@@ -13,6 +13,7 @@ constexpr int settling_iterations = 30;
 
 TissueBudget live_budget(TissueBudget keeping_up, bool settles, bool jaw_teleports,
                          bool reused_before) {
+  keeping_up.damped_contact = settles;
   if (settles) keeping_up.max_iterations = std::max(keeping_up.max_iterations, settling_iterations);
   if (jaw_teleports || reused_before) keeping_up.max_iterations = TissueBudget{}.max_iterations;
   return keeping_up;

@@ -202,7 +202,8 @@ TissueState solve_step(const TissueModel& model, const TissueState& previous,
                                               .tolerance_mm = 3 * budget.tolerance_mm,
                                               .gap_mm = 3 * budget.tolerance_mm,
                                               .rough_mm = accepted_contact_mm,
-                                              .relaxed = budget.relaxed_contact};
+                                              .relaxed = budget.relaxed_contact,
+                                              .damped = budget.damped_contact};
   FrameSolve solve(model, loads, budget, factor, state);
   ContactSolveResult touching = solve_contact(
       [&](const Nodes& x) {

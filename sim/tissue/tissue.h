@@ -36,6 +36,9 @@ struct TissueBudget {
   /// Contacts at sharp edges, as of cut bones, converge where they would oscillate; elsewhere they
   /// may take a few iterations more.
   bool relaxed_contact = false;
+  /// Contact planes are averaged with their earlier ones from the first search on. Where frames at
+  /// unchanged poses would oscillate, they then converge; moving tissue needs more iterations.
+  bool damped_contact = false;
   int threads = 1;  // the result is bit-identical for any number
 };
 

@@ -42,6 +42,8 @@ TEST(LiveBudget, GrowsWhileTissueSettlesAndIsWholeWhereTheJawLeapsOrASolveFailed
   const int settling = live_budget(keeping_up, true, false, false).max_iterations;
   EXPECT_GT(settling, 3);
   EXPECT_LT(settling, whole);
+  EXPECT_TRUE(live_budget(keeping_up, true, false, false).damped_contact);
+  EXPECT_FALSE(live_budget(keeping_up, false, false, false).damped_contact);
   EXPECT_EQ(live_budget(keeping_up, false, true, false).max_iterations, whole);
   EXPECT_EQ(live_budget(keeping_up, true, false, true).max_iterations, whole);
 }
