@@ -1,21 +1,13 @@
 #include "render/recording/distance_drawing.h"
 
-#include <algorithm>
-
-#include "engine/collide/shells.h"
+#include "sim/contact/distance_map.h"
 
 namespace condyle {
 
-std::vector<std::string> distance_remarks(const Case& patient) {
+std::vector<std::string> distance_remarks(const Case& patient, bool open) {
   const bool others = patient.bodies.size() > 2;
   std::vector<std::string> lines = {others ? "to parts it may touch" : "to the opposing jaw"};
-  const auto is_open = [](const Part& part) {
-    if (!collides(part.role)) return false;
-    const auto shells = solid_shells(part.mesh);
-    return std::any_of(shells.begin(), shells.end(), [](const Shell& s) { return !s.closed; });
-  };
-  if (std::any_of(patient.parts.begin(), patient.parts.end(), is_open))
-    lines.insert(lines.end(), {"open surfaces have no inside:", "no sign near them"});
+  if (open) lines.insert(lines.end(), {"open surfaces have no inside:", "no sign near them"});
   return lines;
 }
 
@@ -24,7 +16,7 @@ DistanceDrawing::DistanceDrawing(const Case& patient, const DistanceMapSettings&
     : map_(patient, settings, threads),
       colours_(std::move(colours)),
       threads_(threads),
-      remarks_(distance_remarks(patient)) {
+      remarks_(distance_remarks(patient, has_open_surfaces(patient))) {
   renderer.set_colour_map(colours_);
   for (const auto& surface : map_.surfaces()) {
     names_.push_back(patient.parts[static_cast<std::size_t>(surface.part)].name);

@@ -32,6 +32,6 @@ class DistanceDrawing {
 };
 
 /// Remarks of the legend: what the distance refers to, and where it has no sign.
-std::vector<std::string> distance_remarks(const Case& patient);
+std::vector<std::string> distance_remarks(const Case& patient, bool open);
 
 }  // namespace condyle

@@ -87,10 +87,12 @@ Case with_landmarks(Case patient, const std::vector<Landmark>& landmarks) {
   return patient;
 }
 
-std::vector<Landmark> landmarks_of(const Case& patient) {
+std::vector<Landmark> landmarks_of(const SessionPatient& patient) {
   std::vector<Landmark> landmarks;
-  for (const auto& [name, at] : patient.landmarks.points)
-    landmarks.push_back(landmark_at(name, at, patient.parts));
+  for (const auto& [name, at] : patient.scene.patient.landmarks.points) {
+    const auto [part, vertex] = patient.surfaces->landmarks.at(name);
+    landmarks.push_back({name, at, part, vertex});
+  }
   return landmarks;
 }
 

@@ -71,7 +71,7 @@ PatientLoader::Loaded load_saved_patient(const std::filesystem::path& file,
 /// The patient's case with other landmarks.
 Case with_landmarks(Case patient, const std::vector<Landmark>& landmarks);
 
-/// The landmarks of a case, each on the part that carries it.
-std::vector<Landmark> landmarks_of(const Case& patient);
+/// The landmarks of a patient, each on the part that carries it.
+std::vector<Landmark> landmarks_of(const SessionPatient& patient);
 
 }  // namespace condyle

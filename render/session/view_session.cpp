@@ -254,14 +254,14 @@ WindowScene ViewSession::scene_of_patient() const {
   WindowScene scene{.parts = patient.parts,
                     .case_name = patient.name,
                     .distance_colours = distance_colours({.near_mm = map_settings.reach_mm}),
-                    .distance_remarks = distance_remarks(patient),
+                    .distance_remarks = distance_remarks(patient, state_.patient->surfaces->open),
                     .bodies = movable_bodies(patient.parts, patient.bodies)};
   use_clinical_axes(scene.bodies);
   scene.has_midsagittal_plane = midsagittal_plane(*state_.patient).has_value();
   scene.case_folder = state_.patient->folder;
   scene.session = state_.session;
   scene.ct = ct_.view();
-  scene.landmarks = scene.landmarks_in_use = landmarks_of(patient);
+  scene.landmarks = scene.landmarks_in_use = landmarks_of(*state_.patient);
   scene.motions = motion_names(state_.patient->scene);
   scene.motion = asked_;
   scene.muscles = muscle_items(*state_.patient);

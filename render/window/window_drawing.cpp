@@ -367,11 +367,13 @@ void Window::State::draw(bool always, Image* copy) {
   const bool clock_due = view.playing && seconds_since(pacing.last_draw) > clock_interval_s;
   const bool due = news || pacing.frames_due > 0 || clock_due || save_window || panels->talking();
   // Slightly early counts as due: the wait before was for this picture.
-  if (!always && (!due || seconds_since(pacing.last_draw) < 0.9 * picture_interval_s)) {
+  if (!always &&
+      (!due || pacing.drawn || seconds_since(pacing.last_draw) < 0.9 * picture_interval_s)) {
     if (news) pacing.frames_due = std::max(pacing.frames_due, 1);
     return;
   }
   pacing.last_draw = Clock::now();
+  pacing.drawn = true;
   interface_frame();
 
   int w = 0, h = 0;

@@ -219,6 +219,7 @@ void Window::State::wait_for_events() {
     glfwPollEvents();
   }
   pacing.last_look = Clock::now();
+  pacing.drawn = false;
   // Each press and release gets its own pass over the panels, so that none is lost between
   // pictures.
   while (input.waits()) interface_frame();

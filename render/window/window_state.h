@@ -36,7 +36,7 @@ struct WindowComparison {
   std::shared_ptr<const FrameState> frame;
   bool by_hand = false;
   std::shared_ptr<const BeforeOperation> before;  // the operation, where the frame is its own
-  std::shared_ptr<const MapValues> values;  // its distances; none if they were not shown
+  std::shared_ptr<const MapValues> values;        // its distances; none if they were not shown
 };
 
 /// A picture of a CT, and the pixels that it has.
@@ -96,6 +96,7 @@ struct WindowPacing {
   int frames_due = 3;         // passes over the panels still to draw
   int counted_pictures = 0;   // since counted_from
   bool polled = false;        // whether events have been polled
+  bool drawn = false;         // since then
   Clock::time_point last_request{};
   Clock::time_point last_poll = Clock::now(), last_look = last_poll, last_draw = last_poll,
                     last_change = last_poll, last_event = last_poll, counted_from = last_poll;

@@ -325,6 +325,14 @@ DistanceMap::DistanceMap(const Case& patient, const DistanceMapSettings& setting
   state.lay_out();
 }
 
+bool has_open_surfaces(const Case& patient) {
+  return std::any_of(patient.parts.begin(), patient.parts.end(), [](const Part& part) {
+    if (!collides(part.role)) return false;
+    const auto shells = solid_shells(part.mesh);
+    return std::any_of(shells.begin(), shells.end(), [](const Shell& s) { return !s.closed; });
+  });
+}
+
 DistanceMap::~DistanceMap() = default;
 DistanceMap::DistanceMap(DistanceMap&&) noexcept = default;
 DistanceMap& DistanceMap::operator=(DistanceMap&&) noexcept = default;

@@ -19,6 +19,9 @@ struct DistanceMapSettings {
   std::vector<PairRule> pair_rules = {};
 };
 
+/// Whether a surface that can collide is open, so that it has no inside.
+bool has_open_surfaces(const Case& patient);
+
 /// Distance of each bone and each arch to all parts that it may touch: from parts fixed to the
 /// cranium to those of the mandible and free parts, and so on. Excluded are pairs of one body, and
 /// those that were one before a cut.

@@ -81,38 +81,59 @@ std::vector<std::string> cut_sentences(const CutReport& report, const Landmarks&
   return sentences;
 }
 
+namespace {
+
+/// Whether the plan's cuts or grafts made a body.
+bool is_made(const Operated& operated, const std::string& body) {
+  return std::any_of(operated.cuts.begin(), operated.cuts.end(),
+                     [&](const CutReport& cut) {
+                       return std::any_of(cut.pieces.begin(), cut.pieces.end(),
+                                          [&](const CutPiece& piece) {
+                                            return piece.body == body && !piece.stays;
+                                          });
+                     }) ||
+         std::any_of(operated.grafts.begin(), operated.grafts.end(), [&](const GraftLayout& graft) {
+           const auto names = graft_bodies(graft.step);
+           return std::find(names.begin(), names.end(), body) != names.end();
+         });
+}
+
+/// The body's parts that the plan's cuts made or changed.
+std::vector<const Part*> operated_parts(const Operated& operated, BodyId body) {
+  std::vector<const Part*> parts;
+  for (const Part& part : operated.patient.parts)
+    if (part.body == body && operated.origin.contains(part.name)) parts.push_back(&part);
+  return parts;
+}
+
+}  // namespace
+
+std::vector<std::string> operated_segments(const Operated& operated) {
+  std::vector<std::string> segments;
+  for (int b = 0; b < operated.patient.bodies.size(); ++b) {
+    const std::string& name = operated.patient.bodies[BodyId{b}].name;
+    if (is_made(operated, name) && !operated_parts(operated, BodyId{b}).empty())
+      segments.push_back(name);
+  }
+  return segments;
+}
+
 std::vector<BoneSummary> operated_bones(const Operated& operated) {
   const Case& patient = operated.patient;
-  const auto is_made = [&](const std::string& body) {
-    return std::any_of(operated.cuts.begin(), operated.cuts.end(),
-                       [&](const CutReport& cut) {
-                         return std::any_of(cut.pieces.begin(), cut.pieces.end(),
-                                            [&](const CutPiece& piece) {
-                                              return piece.body == body && !piece.stays;
-                                            });
-                       }) ||
-           std::any_of(operated.grafts.begin(), operated.grafts.end(),
-                       [&](const GraftLayout& graft) {
-                         const auto names = graft_bodies(graft.step);
-                         return std::find(names.begin(), names.end(), body) != names.end();
-                       });
-  };
   std::vector<BoneSummary> bones;
   for (int b = 0; b < patient.bodies.size(); ++b) {
     const Body& body = patient.bodies[BodyId{b}];
     BoneSummary bone{.name = body.name,
                      .parent = b == 0 ? "" : patient.bodies[body.parent].name,
-                     .is_segment = is_made(body.name)};
+                     .is_segment = is_made(operated, body.name)};
     for (const TrimReport& trim : operated.trims)
       if (trim.segment == body.name) bone.trimmed_mm3 += trim.removed_mm3();
-    bool any = false;
-    for (const Part& part : patient.parts) {
-      if (part.body != BodyId{b} || !operated.origin.contains(part.name)) continue;
-      any = true;
-      bone.volume_mm3 += signed_volume(part.mesh);
-      bone.closed = bone.closed && inspect(part.mesh).closed();
+    const auto parts = operated_parts(operated, BodyId{b});
+    for (const Part* part : parts) {
+      bone.volume_mm3 += signed_volume(part->mesh);
+      bone.closed = bone.closed && inspect(part->mesh).closed();
     }
-    if (any) bones.push_back(std::move(bone));
+    if (!parts.empty()) bones.push_back(std::move(bone));
   }
   return bones;
 }

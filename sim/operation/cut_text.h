@@ -23,6 +23,9 @@ struct BoneSummary {
 /// Bodies that the plan's cuts made or changed and that have bone, in the order of the tree.
 std::vector<BoneSummary> operated_bones(const Operated& operated);
 
+/// The segments that the plan's cuts and grafts made, by the names of their bodies.
+std::vector<std::string> operated_segments(const Operated& operated);
+
 /// A step besides its title in one line: "makes chin; kerf 0.7 mm", "forward 4.0 mm; about
 /// pogonion".
 std::string step_details(const PlanAction& action);

@@ -347,9 +347,8 @@ void add_tables(PlanView& view, const Plan& plan, const Operated& operated) {
 
 /// What can be resected, and replaced by a graft.
 void add_graft_choices(PlanView& view, const Plan& plan, const Operated& operated) {
-  for (const BoneSummary& bone : operated_bones(operated))
-    if (bone.is_segment && !move_of(plan, bone.name))
-      view.resectable.push_back({bone.name, display_name(bone.name)});
+  for (const std::string& segment : operated_segments(operated))
+    if (!move_of(plan, segment)) view.resectable.push_back({segment, display_name(segment)});
   for (const Resection& resection : operated.resections)
     if (std::none_of(operated.grafts.begin(), operated.grafts.end(), [&](const GraftLayout& graft) {
           return graft.step.replaces == resection.segment;
@@ -434,9 +433,8 @@ PlanView plan_view(const PlanDocument& document, const Operated& operated,
   for (const std::string& name : osteotomy_names())
     view.osteotomies.push_back({name, osteotomy_label(name)});
   const BodyTree& bodies = operated.patient.bodies;
-  for (const BoneSummary& bone : operated_bones(operated))
-    if (bone.is_segment && !move_of(plan, bone.name))
-      view.segments.push_back({bone.name, display_name(bone.name)});
+  for (const std::string& segment : operated_segments(operated))
+    if (!move_of(plan, segment)) view.segments.push_back({segment, display_name(segment)});
   const JawBodies& jaw = operated.patient.jaw;
   for (const BodyId arch : {jaw.upper_arch, jaw.lower_arch})
     if (arch != cranium_body && arch != jaw.left_condyle && arch != jaw.right_condyle)

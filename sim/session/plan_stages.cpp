@@ -44,7 +44,8 @@ PlanStages::Made PlanStages::with_contact(const SessionPatient& pieces, const Pl
                                    &earlier.scene.contacts, progress),
        .uncut = uncut_,
        .operated = pieces.operated,
-       .overlaps = std::move(overlaps)});
+       .overlaps = std::move(overlaps),
+       .surfaces = pieces.surfaces});
 }
 
 PlanStages::Made PlanStages::with_face(const SessionPatient& bones, const Plan& plan,

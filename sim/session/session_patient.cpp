@@ -4,8 +4,10 @@
 #include <utility>
 
 #include "engine/core/error.h"
+#include "sim/contact/distance_map.h"
 #include "sim/muscles/default_muscles.h"
 #include "sim/operated/operated_scene.h"
+#include "sim/operated/state_before.h"
 
 namespace condyle {
 
@@ -15,6 +17,17 @@ Plan empty_plan(const Case& patient) {
   plan.geometry = geometry_of(patient);
   return plan;
 }
+
+namespace {
+
+SurfaceFacts surface_facts(const Case& patient) {
+  SurfaceFacts facts{.open = has_open_surfaces(patient)};
+  for (const auto& [name, at] : patient.landmarks.points)
+    facts.landmarks[name] = landmark_vertex(name, at, patient.parts);
+  return facts;
+}
+
+}  // namespace
 
 std::shared_ptr<const SessionPatient> make_session_patient(Case patient,
                                                            std::filesystem::path folder,
@@ -49,6 +62,7 @@ std::shared_ptr<const SessionPatient> completed_patient(SessionPatient patient, 
   auto made = std::make_shared<SessionPatient>(std::move(patient));
   made->at_rest = rest_frame(made->scene);
   carry_face(made->scene, made->at_rest, threads);
+  if (!made->surfaces) made->surfaces = surface_facts(made->scene.patient);
   try {
     made->muscles = muscles_of(made->scene.patient);
   } catch (const InputError&) {
@@ -57,51 +71,8 @@ std::shared_ptr<const SessionPatient> completed_patient(SessionPatient patient, 
   return made;
 }
 
-namespace {
-
-/// What remains of a kind of part where some was resected, else of its bone.
-std::string shown_with(const Operated& operated, const Resection& resection, Role role) {
-  for (const Part& part : operated.patient.parts)
-    if (part.role == role && role != Role::segment) return part.name;
-  for (const Part& part : operated.patient.parts)
-    if (const auto origin = operated.origin.find(part.name);
-        origin != operated.origin.end() && origin->second.part == resection.origin.part)
-      return part.name;
-  return {};
-}
-
-}  // namespace
-
 std::optional<BeforeOperation> before_operation(const SessionPatient& patient) {
-  const Operated& operated = *patient.operated;
-  const auto& planned = operated.poses.X_CB;
-  BeforeOperation before;
-  for (const Resection& resection : operated.resections)
-    for (Part part : resection.parts) {
-      part.body = cranium_body;
-      std::string shown_as = shown_with(operated, resection, part.role);
-      before.removed.push_back({std::move(part), std::move(shown_as)});
-    }
-  for (const GraftLayout& graft : operated.grafts)
-    for (const GraftPiece& piece : graft.pieces)
-      for (const Part& part : operated.patient.parts)
-        if (operated.patient.bodies[part.body].name == piece.body)
-          before.added.push_back(part.name);
-  const Pose rest;
-  if (before.removed.empty() && before.added.empty() &&
-      std::all_of(planned.begin(), planned.end(),
-                  [&](const Pose& X) { return bit_identical(X, rest); }))
-    return std::nullopt;
-  FrameState& frame = before.frame;
-  frame = patient.at_rest;
-  frame.contacts = {};
-  for (std::size_t b = 0; b < std::min(planned.size(), frame.poses.X_CB.size()); ++b)
-    frame.poses.X_CB[b] = planned[b].inverse();
-  if (const Part* face = patient.uncut->find(Role::face)) {
-    frame.face.clear();
-    for (const Eigen::Vector3d& p : face->mesh.vertices) frame.face.push_back(p.cast<float>());
-  }
-  return before;
+  return before_operation(*patient.operated, patient.at_rest, *patient.uncut);
 }
 
 }  // namespace condyle

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -8,11 +9,18 @@
 
 #include "sim/case/muscle.h"
 #include "sim/frame/before_operation.h"
+#include "sim/frame/landmark_vertex.h"
 #include "sim/operation/segment_overlaps.h"
 #include "sim/plan/plan.h"
 #include "sim/simulator/simulator.h"
 
 namespace condyle {
+
+/// Facts on a patient's surfaces that take time to find.
+struct SurfaceFacts {
+  std::map<std::string, LandmarkVertex> landmarks = {};  // of each landmark of the case
+  bool open = false;  // a surface that can collide is open: it has no inside
+};
 
 /// A patient of a session: the simulated scene, and what is reported of it.
 struct SessionPatient {
@@ -24,6 +32,7 @@ struct SessionPatient {
   std::shared_ptr<const Case> uncut = nullptr;         // before the operation of the plan
   std::shared_ptr<const Operated> operated = nullptr;  // by the plan, which may be empty
   std::vector<SegmentOverlap> overlaps = {};           // at the planned positions
+  std::optional<SurfaceFacts> surfaces = {};
 };
 
 /// A plan without steps for a case.
@@ -41,7 +50,8 @@ std::shared_ptr<const SessionPatient> make_session_patient(Case patient,
 /// The patient before the operation. Absent where nothing was moved, resected or grafted.
 std::optional<BeforeOperation> before_operation(const SessionPatient& patient);
 
-/// The patient with what follows from its scene: its state at rest and its muscles.
+/// The patient with what follows from its scene: its state at rest, its muscles and, unless they
+/// are there already, the facts on its surfaces.
 std::shared_ptr<const SessionPatient> completed_patient(SessionPatient patient, int threads = 2);
 
 }  // namespace condyle

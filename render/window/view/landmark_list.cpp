@@ -1,41 +1,18 @@
 #include "render/window/view/landmark_list.h"
 
 #include <cctype>
-#include <limits>
 
 #include "sim/frame/body_poses.h"
+#include "sim/frame/landmark_vertex.h"
 
 namespace condyle {
-namespace {
 
 using Eigen::Vector3d;
 
-/// The nearest vertex of a part, if it is nearer than `nearest`.
-void look(std::span<const Part> parts, std::size_t part, const Vector3d& p, double& nearest,
-          Landmark& landmark) {
-  const auto& vertices = parts[part].mesh.vertices;
-  for (std::size_t v = 0; v < vertices.size(); ++v) {
-    const double away = (vertices[v] - p).squaredNorm();
-    if (away >= nearest) continue;
-    nearest = away;
-    landmark.part = part;
-    landmark.vertex = static_cast<int>(v);
-  }
-}
-
-}  // namespace
-
 Landmark landmark_at(const std::string& name, const Vector3d& at_rest,
                      std::span<const Part> parts) {
-  Landmark landmark{name, at_rest, 0, 0};
-  double nearest = std::numeric_limits<double>::infinity();
-  const bool of_condyle = name.ends_with("condyle") || name.ends_with("condylion");
-  for (std::size_t i = 0; of_condyle && i < parts.size(); ++i)
-    if (parts[i].role == Role::mandible || is_piece(parts[i].role))
-      look(parts, i, at_rest, nearest, landmark);
-  if (nearest < std::numeric_limits<double>::infinity()) return landmark;
-  for (std::size_t i = 0; i < parts.size(); ++i) look(parts, i, at_rest, nearest, landmark);
-  return landmark;
+  const LandmarkVertex carrier = landmark_vertex(name, at_rest, parts);
+  return {name, at_rest, carrier.part, carrier.vertex};
 }
 
 Landmark landmark_on(const std::string& name, const PinnedPoint& point,

@@ -56,6 +56,7 @@ TEST(CutText, SummarizesTheBonesOfEachBody) {
     sum += bone.volume_mm3;
   }
   EXPECT_NEAR(sum, 100 * 92 * 39, 1e-5);
+  EXPECT_EQ(operated_segments(operated), (std::vector<std::string>{"proximal", "distal", "chin"}));
 }
 
 TEST(CutText, ListsSteps) {
