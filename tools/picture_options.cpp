@@ -35,9 +35,11 @@ void add_overlays(CLI::App& command, PictureOptions& picture) {
                   "point), ghost (the rest position), wireframe[:PARTS], patches (of contact), "
                   "scale, letters (L R A P S I)")
       ->type_name("LIST");
-  in_range(command.add_option("--wipe", picture.wipe,
-                              "Rest at the left of this fraction of the width, now at the right"),
-           0, 1);
+  in_range(
+      command.add_option("--wipe", picture.wipe,
+                         "At the left of this fraction of the width rest, with --plan before the "
+                         "operation; at the right now"),
+      0, 1);
   command.add_flag("--before-after", picture.before_after,
                    "Three pictures of that size side by side: at rest, now, and now with the skin "
                    "coloured by its displacement");

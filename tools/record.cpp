@@ -10,6 +10,7 @@
 #include "engine/core/files.h"
 #include "render/recording/frame_renderer.h"
 #include "render/recording/recording_identity.h"
+#include "sim/operated/state_before.h"
 #include "sim/report/motion_plots.h"
 #include "sim/report/report.h"
 #include "sim/report/trace.h"
@@ -71,6 +72,19 @@ void check_early(const RecordOptions& options) {
   if (options.pictures) check_pictures(options.picture);
 }
 
+/// Left of a wipe is the patient before the operation, if there is one.
+void add_state_before(const Case& uncut, const Scene& scene, const MotionOptions& options,
+                      PicturePlan& pictures) {
+  const auto plan = plan_of(options.plan);
+  if (!plan) return;
+  FrameState at_rest = rest_frame(scene);
+  carry_face(scene, at_rest);
+  auto before = before_operation(apply_plan(uncut, *plan), at_rest, uncut);
+  if (!before) return;
+  pictures.operation = std::make_shared<const BeforeOperation>(std::move(*before));
+  pictures.before = {pictures.operation, &pictures.operation->frame};
+}
+
 int run_record(const RecordOptions& options, const CommonOptions& common) {
   check_early(options);
   make_folder(options.out);
@@ -82,8 +96,11 @@ int run_record(const RecordOptions& options, const CommonOptions& common) {
   std::optional<PicturePlan> plan;
   const bool is_uncut = options.motion.plan.empty();  // else segments may be named
   if (options.pictures && is_uncut) plan = parse_pictures(options.picture, patient);
-  const Scene scene = scene_of(options.motion, std::move(patient), settings, bar.callback());
-  if (options.pictures && !is_uncut) plan = parse_pictures(options.picture, scene.patient);
+  const Scene scene = scene_of(options.motion, patient, settings, bar.callback());
+  if (options.pictures && !is_uncut) {
+    plan = parse_pictures(options.picture, scene.patient);
+    if (plan->wipe) add_state_before(patient, scene, options.motion, *plan);
+  }
   print_notes(scene, options.motion.patient, common, bar);
   bar.show("preparing the motion", 0);
   Playback playback(scene, motion_of(options.motion, scene, common.threads), settings,

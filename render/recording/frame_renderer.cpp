@@ -109,7 +109,7 @@ FrameRenderer::FrameRenderer(const PicturePlan& plan, const RecordingFiles& file
   const bool distance = plan_.map == SurfaceMap::distance;
   if (plan_.overlays.muscles) muscles_ = muscles_of(patient);
   if (subject.settings.face) carry_face(subject.scene, rest_, subject.settings.threads);
-  if (plan_.window && plan_.window->before) rest_ = *plan_.window->before;
+  if (plan_.before) rest_ = *plan_.before;
 
   for (PlannedView& planned : planned_views(plan_, files, subject)) {
     View view{std::move(planned.camera), plan_.settings, nullptr};
@@ -126,8 +126,7 @@ FrameRenderer::FrameRenderer(const PicturePlan& plan, const RecordingFiles& file
   constexpr double max_pixels_for_two = 1.7e7;
   const double pixels = static_cast<double>(plan_.settings.width) * plan_.settings.height *
                         plan_.settings.supersampling * plan_.settings.supersampling;
-  drawers_.emplace(patient.parts, mapped || pixels > max_pixels_for_two ? 1 : 2,
-                   plan_.window ? plan_.window->operation : nullptr);
+  drawers_.emplace(patient.parts, mapped || pixels > max_pixels_for_two ? 1 : 2, plan_.operation);
   const PictureSettings& size = plan_.settings;
   if (const int most = drawers_->max_side() / size.supersampling;
       size.width > most || size.height > most)
@@ -220,7 +219,7 @@ Image FrameRenderer::picture(const View& view, const Camera& camera, const Shot&
   if (plan_.wipe) {
     const Overlays still = overlays_of(rest_, false);
     PictureSettings of_rest = view.settings;
-    of_rest.before_operation = plan_.window && plan_.window->operation;
+    of_rest.before_operation = plan_.operation != nullptr;
     image = wiped(drawn(of_rest, camera, {shot.renderer, shot.desk, rest_, still}, true), image,
                   *plan_.wipe, plan_.settings.backdrop);
     notes.line_at = *plan_.wipe;

@@ -20,11 +20,9 @@ enum class SurfaceMap { none, distance, displacement };
 
 /// Data specific to a recording from a window.
 struct WindowPicture {
-  Camera camera = {};                                  // `own_camera` and `turning_camera`
-  Eigen::Vector3d upright = {0, 0, 1};                 // axis of the latter
-  std::shared_ptr<const FrameState> before = nullptr;  // left of a wipe; null: the patient at rest
-  std::shared_ptr<const BeforeOperation> operation = nullptr;  // if `before` is the state before it
-  std::function<Overlays(const FrameState&)> overlays = {};    // replace those by name
+  Camera camera = {};                                        // `own_camera` and `turning_camera`
+  Eigen::Vector3d upright = {0, 0, 1};                       // axis of the latter
+  std::function<Overlays(const FrameState&)> overlays = {};  // replace those by name
 };
 
 /// Content of each picture of a recording.
@@ -35,6 +33,8 @@ struct PicturePlan {
   SurfaceMap map = SurfaceMap::none;
   bool patches = false;
   std::optional<double> wipe = std::nullopt;
+  std::shared_ptr<const FrameState> before = nullptr;  // left of a wipe; null: the patient at rest
+  std::shared_ptr<const BeforeOperation> operation = nullptr;  // if `before` is the state before it
   bool before_after = false;
   double near_mm = 2;  // end of the distance map
   std::string caption = {};

@@ -72,10 +72,10 @@ std::uint64_t shown_hash(const ViewRecording& subject, const PicturePlan& plan) 
                     plan.caption,
                     plan.map,
                     plan.wipe.value_or(-1)};
-  if (const auto& kept = plan.window->before)
+  if (const auto& kept = plan.before)
     shown["kept"] = {kept->state_hash,
                      pose(kept->poses[subject.patient->scene.patient.jaw.lower_arch])};
-  if (const auto& operation = plan.window->operation) {
+  if (const auto& operation = plan.operation) {
     for (const RemovedPart& removed : operation->removed)
       shown["removed"].push_back(mesh_hash(removed.part.mesh));
     shown["added"] = operation->added;
@@ -103,10 +103,9 @@ PicturePlan plan_of(const ViewRecording& subject) {
   plan.near_mm = DistanceBands{}.near_mm;
   plan.caption = record.caption;
   plan.cameras = record.cameras;
-  plan.window = WindowPicture{.camera = record.camera,
-                              .upright = record.upright,
-                              .before = record.kept,
-                              .operation = record.before};
+  plan.before = record.kept;
+  plan.operation = record.before;
+  plan.window = WindowPicture{.camera = record.camera, .upright = record.upright};
   plan.window->overlays = [&subject](const FrameState& frame) {
     return view_overlays(*subject.patient, subject.motion->motion, frame, subject.view,
                          subject.paths);
