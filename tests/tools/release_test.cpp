@@ -53,8 +53,8 @@ TEST(Release, ATransplantComesToLieOnBoneAndItsCaseIsSaved) {
   // By the command's earlier name.
   const auto again = condyle({"let-go", out, "--push", "0,0,-5", "--json", "--quiet"});
   ASSERT_EQ(again.code, 0) << again.err;
-  for (const auto& t : nlohmann::json::parse(again.out)["moved"][0]["translation_mm"])
-    EXPECT_NEAR(t.get<double>(), 0, 0.05);
+  const auto after = nlohmann::json::parse(again.out);
+  for (const auto& t : after["moved"][0]["translation_mm"]) EXPECT_NEAR(t.get<double>(), 0, 0.05);
 }
 
 TEST(Release, PartsPushEachOtherOntoTheBone) {
