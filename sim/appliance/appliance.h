@@ -71,6 +71,10 @@ ApplianceMeasure measure_in_axes(const TriMesh& mesh, const TriangleTree& tree,
                                  const Eigen::Matrix3d& R, const std::vector<PrintedOn>& prints,
                                  int threads);
 
+/// throws: InputError for an appliance that cannot be withdrawn: that passes through what carries
+/// it by 0.5 mm more than its grip. `name`: "splint".
+void check_withdrawal(const ApplianceMeasure& measure, double grip_mm, const std::string& name);
+
 /// A wall that is thinner than another, and the middle of it.
 struct ThinWall {
   Eigen::Vector3d at = Eigen::Vector3d::Zero();

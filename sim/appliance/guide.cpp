@@ -546,6 +546,7 @@ Guide make_guide(const GuideSupport& support, const CutLine& line, const GuideSe
                                      .held_mm = guide_held_mm(settings),
                                      .thin_mm = guide_thin_mm}}},
                                   settings.threads);
+  check_withdrawal(guide.measure, settings.grip_mm, "guide");
   guide.holes = std::move(made.holes);
   guide.notes = std::move(made.notes);
   for (ScrewHole& hole : guide.holes) measure_hole({*made.tree, R}, settings, hole);

@@ -1,7 +1,10 @@
+#include <fmt/format.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
+#include "engine/core/error.h"
 #include "engine/core/parallel.h"
 #include "engine/mesh/measure.h"
 #include "engine/mesh/repair.h"
@@ -229,6 +232,17 @@ ApplianceMeasure measure_in_axes(const TriMesh& mesh, const TriangleTree& tree,
     measure.prints.back().seat = R.transpose() * each.settings.seat;
   }
   return measure;
+}
+
+void check_withdrawal(const ApplianceMeasure& measure, double grip_mm, const std::string& name) {
+  constexpr double elastic_mm = 0.5;
+  for (const PrintMeasure& print : measure.prints)
+    if (print.undercut_mm > grip_mm + elastic_mm)
+      throw InputError(fmt::format(
+          "the {} cannot be withdrawn from {}: it would pass {:.2f} mm deep through it, and its "
+          "grip "
+          "is {:g} mm; less depth, and crowns that are a part of their own, leave fewer undercuts",
+          name, print.on, print.undercut_mm, grip_mm));
 }
 
 std::vector<ThinWall> find_thin_walls(const TriMesh& mesh, const TriangleTree& tree,

@@ -305,6 +305,7 @@ Splint make_splint(const SplintArches& arches, const SplintSettings& settings,
                        .thin_mm = 2 * thin_radius_mm,
                        .body = [&](const Vector3d& p) { return field.plate(p); }}});
   splint.measure = measure_in_axes(mesh, tree, R, prints, settings.threads);
+  check_withdrawal(splint.measure, settings.grip_mm, "splint");
   splint.measure.prints[0].tilt_deg = upper.tilt_deg;
   splint.measure.prints[1].tilt_deg = lower.tilt_deg;
   splint.mesh = in_axes(std::move(mesh), R.transpose());

@@ -195,6 +195,22 @@ TEST(Splint, LeavesTheTeethWithItsGripAlone) {
   EXPECT_GT(undercut, 0.1);  // there are undercuts to hold
 }
 
+TEST(Splint, ThatCannotBeWithdrawnIsRefused) {
+  ApplianceMeasure measure;
+  measure.prints.emplace_back().on = "mandible";
+  measure.prints[0].undercut_mm = 0.45;
+  EXPECT_NO_THROW(check_withdrawal(measure, 0.4, "splint"));
+  measure.prints[0].undercut_mm = 4.98;
+  try {
+    check_withdrawal(measure, 0.4, "splint");
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    const std::string words = error.what();
+    EXPECT_NE(words.find("the splint cannot be withdrawn from mandible"), std::string::npos);
+    EXPECT_NE(words.find("4.98 mm"), std::string::npos);
+  }
+}
+
 TEST(Splint, TheIntermediateOneHoldsTheOtherJawAtRest) {
   const SplintArches upper_first = splint_arches(two_jaws(), SplintKind::intermediate),
                      lower_first =
