@@ -72,28 +72,24 @@ InsertionPath examine(const GraftSurroundings& around, const Vector3d& direction
   InsertionPath path;
   path.direction = direction;
   path.margin_mm = farthest_mm;
-  const double seated = std::min(around.at({}).mm, 0.);
+  // Overlap at the seat may only become less, and ends with it.
+  double allowed = std::min(around.at({}).mm, 0.);
   for (double s = fine_mm; s <= path_length_mm; s += s < fine_part_mm ? fine_mm : coarse_mm) {
     const Clearance found = around.at({Eigen::Quaterniond::Identity(), s * direction});
-    if (found.mm < seated - blocking_depth_mm) {
+    if (found.mm < allowed - blocking_depth_mm || (s >= seat_mm && found.mm < -blocking_depth_mm)) {
       path.blocked_by = *found.part;
       path.margin_part.clear();
       path.margin_mm = path.margin_after_mm = 0;
       path.margin_at = found.at;
       return path;
     }
+    allowed = std::max(allowed, std::min(found.mm, 0.));
     path.blocked_after_mm = path.length_mm = s;
     if (s < seat_mm || found.mm >= path.margin_mm) continue;
     path.margin_mm = found.mm;
     path.margin_after_mm = s;
     path.margin_at = found.at;
     path.margin_part = *found.part;
-  }
-  if (path.margin_mm < -blocking_depth_mm) {
-    path.state = InsertionPath::State::blocked;
-    path.blocked_after_mm = path.margin_after_mm;
-    path.blocked_by = path.margin_part;
-    return path;
   }
   path.state =
       path.margin_mm < tight_margin_mm ? InsertionPath::State::tight : InsertionPath::State::free;
@@ -203,9 +199,11 @@ std::string insertion_path_text(const InsertionPath& path, const Seat& seat) {
         seat.name,
         path.blocked_by.empty()
             ? "no straight direction leads out between the faces of the bone"
-            : fmt::format("of {} straight directions the best withdraws the graft by {:.2f} mm, "
-                          "where it meets {} at {}",
-                          path.directions, path.blocked_after_mm, path.blocked_by, where),
+            : fmt::format(
+                  "of {} straight directions the best ({}) withdraws the graft by {:.2f} mm, "
+                  "where it meets {} at {}",
+                  path.directions, direction_words(path.direction), path.blocked_after_mm,
+                  path.blocked_by, where),
         path.poses_examined, path.searched_mm);
   std::string text = fmt::format(
       "insertion path of {}: {}, {} (out of its seat {})", seat.name, state_name(path.state),

@@ -129,6 +129,30 @@ TEST(InsertionPath, is_blocked_by_what_closes_the_gap_after_the_distance_to_it) 
   EXPECT_NE(insertion_path_text(path, seat()).find("paths with turns"), std::string::npos);
 }
 
+TEST(InsertionPath, of_a_graft_that_overlaps_at_its_seat_ends_where_it_meets_other_bone_first) {
+  // The block lies 0.4 mm deep in both walls, which end 1 mm below it; 6 mm farther is a thin
+  // plate, and behind that thick bone, in which the block would lie deeper.
+  Case patient;
+  patient.name = "walls";
+  const auto add = [&](const char* name, Role role, const TriMesh& mesh) {
+    patient.parts.push_back({name, role, mesh, {}});
+  };
+  add("skull", Role::skull, box({-60, -60, 10}, {60, 60, 60}));
+  add("mandible", Role::mandible, box({-60, -10, 6.5}, {-9.6, 10, 9}));
+  const auto add_wall = [&](const char* name, const TriMesh& mesh) {
+    patient.add_piece({name, Role::segment, mesh, {}}, mandible_body);
+  };
+  add_wall("wall", box({9.6, -10, 6.5}, {60, 10, 9}));
+  add_wall("plate", box({-60, -60, -15}, {60, 60, -14.8}));
+  add_wall("bone", box({-60, -60, -60}, {60, 60, -22}));
+  patient.add_piece({"block", Role::transplant, box({-10, -8, -8}, {10, 8, 8}), {}}, mandible_body);
+  const InsertionPath path = find_insertion_path(patient, seat());
+  EXPECT_EQ(path.state, InsertionPath::State::blocked);
+  EXPECT_EQ(path.blocked_by, "plate");
+  EXPECT_GT(path.blocked_after_mm, 6);
+  EXPECT_LT(path.blocked_after_mm, 9);
+}
+
 TEST(InsertionPath, tilts_under_an_overhang_that_blocks_every_straight_direction) {
   const Case patient = overhang(6);
   const InsertionPath path = find_insertion_path(patient, plate(), 2);
