@@ -92,8 +92,13 @@ void Panels::Drawing::plan_step(const PlanStepView& step) {
   ImGui::Indent(pen.px(10));
   plan_numbers(step);
   if (step.numbers.empty()) wrapped(theme.small, palette().text_dim, step.details);
-  for (const std::string& finding : step.findings)
-    wrapped(theme.small, step.warns ? palette().warning : palette().text_dim, finding);
+  // While a handle is dragged: what the cut would do at its new place.
+  if (view.held_handle && view.tool != Tool::cut && input.scene.plan.preview) {
+    cut_findings();
+  } else {
+    for (const std::string& finding : step.findings)
+      wrapped(theme.small, step.warns ? palette().warning : palette().text_dim, finding);
+  }
   const auto& steps = input.scene.plan.steps;
   const float gap = pen.px(button_gap);
   const ImVec2 size = {width_of_each(pen, ImGui::GetContentRegionAvail().x, 3),

@@ -213,6 +213,21 @@ TEST_P(PanelsOn, TheKeyToOverlaysStandsClearOfLegendAndPanels) {
   keep("key");
 }
 
+TEST_P(PanelsOn, WhatACutWouldDoIsShownWhileItsHandleIsDragged) {
+  stage.scene.plan.steps = {{1, "Cut: genioplasty", "", {"chin: 7.6 cm³"}, false, true, {}}};
+  stage.click("tab:Plan");
+  stage.click("plan-step:1");
+  stage.scene.plan.preview = CutPreviewView{.findings = {"mental foramen: 2.1 mm"}, .warns = true};
+  stage.rest();
+  EXPECT_FALSE(stage.has("cut-findings")) << "no handle is held";
+  stage.view.held_handle = HeldHandle{};
+  stage.rest();
+  EXPECT_EQ(stage.item("cut-findings").words, "mental foramen: 2.1 mm");
+  stage.scene.plan.preview = CutPreviewView{.problem = "the cut meets no bone"};
+  stage.rest();
+  EXPECT_EQ(stage.item("cut-problem").words, "the cut meets no bone");
+}
+
 TEST_P(PanelsOn, DistancesShowTheirLegendAndHideTheSkin) {
   stage.click("left-tab:Look");
   EXPECT_FALSE(stage.has("distances"));  // this loop cannot compute them
