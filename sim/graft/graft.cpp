@@ -321,7 +321,7 @@ void check_length(const GraftPiece& piece, const GraftStep& step) {
 
 GraftLayout lay_graft(const GraftStep& step, const TriMesh& resected, const Defect& defect) {
   const Donor donor = make_donor(step);
-  GraftLayout graft{.step = step, .donor_name = donor.name, .defect = defect};
+  GraftLayout graft{.step = step, .defect = defect};
   check_room(graft, donor);
   graft.curve = step.curve.empty()
                     ? border_curve(resected, defect, step.height_mm.value_or(donor.height_mm / 2))

@@ -38,7 +38,6 @@ struct GraftPiece {
 /// A graft in place.
 struct GraftLayout {
   GraftStep step = {};
-  std::string donor_name = {};
   Defect defect = {};
   std::vector<Eigen::Vector3d> curve = {};    // that it follows
   std::vector<Eigen::Vector3d> corners = {};  // of its axis, one more than pieces
@@ -57,8 +56,9 @@ constexpr double least_piece_mm = 20;  // for the blood supply of a vascularised
 /// faces parallel to those of the host at the step's clearance. Pieces are cut from the donor one
 /// after another; neighbouring saw cuts are `kerf + spacing` apart where they are nearest.
 /// `resected`: the bone that was there.
-/// throws: InputError for a gap that the clearances fill, bone no thicker than the saw, a graft that
-/// its donor is too short for, saw cuts that run into each other, and as find_defect(), border_curve() and make_donor().
+/// throws: InputError for a gap that the clearances fill, bone no thicker than the saw, a graft
+/// that its donor is too short for, saw cuts that run into each other, and as find_defect(),
+/// border_curve() and make_donor().
 GraftLayout lay_graft(const GraftStep& step, const TriMesh& resected, const Defect& defect);
 
 }  // namespace condyle

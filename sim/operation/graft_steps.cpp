@@ -325,7 +325,7 @@ std::vector<std::string> graft_sentences(const Operated& operated, const GraftLa
   sentences.push_back(fmt::format(
       "{} from {:.1f} to {:.1f} mm of its length; the axis lies within "
       "{:.1f} mm of its curve",
-      graft.donor_name, graft.donor_from_mm, graft.donor_to_mm, graft.curve_deviation_mm));
+      donor_label(graft.step), graft.donor_from_mm, graft.donor_to_mm, graft.curve_deviation_mm));
   for (std::size_t i = 0; i < graft.pieces.size(); ++i) {
     const GraftPiece& piece = graft.pieces[i];
     sentences.push_back(fmt::format("{}: {:.1f} mm long, {:.1f} cm³; saw cuts {}, and {}",

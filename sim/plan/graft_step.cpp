@@ -90,9 +90,15 @@ GraftStepProblem graft_step_problem(const GraftStep& step) {
   return std::nullopt;
 }
 
+std::string donor_label(const GraftStep& step) {
+  const bool of_file =
+      !step.donor_shape.empty() || step.donor.find_first_of("/\\.") != std::string::npos;
+  return of_file ? "own surface" : step.donor;
+}
+
 std::string graft_step_details(const GraftStep& step) {
   std::string text =
-      fmt::format("{} in {} piece{} for {}; kerf {:g} mm; {}", step.donor, step.pieces,
+      fmt::format("{} in {} piece{} for {}; kerf {:g} mm; {}", donor_label(step), step.pieces,
                   step.pieces == 1 ? "" : "s", step.replaces, step.kerf_mm,
                   step.curve.empty() ? "along the lower border"
                                      : fmt::format("along {} points", step.curve.size()));

@@ -49,6 +49,9 @@ using GraftStepProblem = std::optional<std::pair<std::string, std::string>>;
 GraftStepProblem graft_step_problem(const ResectStep& step);
 GraftStepProblem graft_step_problem(const GraftStep& step);
 
+/// The donor as reports name it: "own surface" for that of a file, whose name may be a patient's.
+std::string donor_label(const GraftStep& step);
+
 /// "fibula in 3 pieces for resected; kerf 0.5 mm": a step in a list.
 std::string graft_step_details(const GraftStep& step);
 

@@ -78,7 +78,7 @@ std::vector<InsertionPath> insertion_paths(const std::vector<Seat>& seats,
 
 Json graft_json(const Operated& operated, const GraftLayout& graft) {
   Json json = {
-      {"name", graft.step.name},          {"donor", graft.donor_name},
+      {"name", graft.step.name},          {"donor", donor_label(graft.step)},
       {"replaces", graft.step.replaces},  {"donor_from_mm", graft.donor_from_mm},
       {"donor_to_mm", graft.donor_to_mm}, {"curve_deviation_mm", graft.curve_deviation_mm}};
   json["pieces"] = Json::array();

@@ -256,6 +256,14 @@ TEST(Grafts, refuse_a_gap_without_room_and_bone_thinner_than_the_saw) {
   EXPECT_EQ(refusal(step, bar(60)), "");
 }
 
+TEST(Grafts, name_no_file_in_reports) {
+  GraftStep step = graft_step(2);
+  EXPECT_NE(graft_step_details(step).find("fibula in 2 pieces"), std::string::npos);
+  step.donor = "/patients/Mustermann/donor.ply";
+  EXPECT_EQ(graft_step_details(step).find("Mustermann"), std::string::npos);
+  EXPECT_NE(graft_step_details(step).find("own surface in 2 pieces"), std::string::npos);
+}
+
 TEST(Grafts, of_a_users_bone_are_cut_into_one_to_four_pieces) {
   const condyle::test::Folder folder;
   const Bar made = bar(100);
