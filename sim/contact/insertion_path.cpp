@@ -72,7 +72,7 @@ InsertionPath examine(const GraftSurroundings& around, const Vector3d& direction
   InsertionPath path;
   path.direction = direction;
   path.margin_mm = farthest_mm;
-  // Overlap at the seat may only become less, and ends with it.
+  // Overlap at the seat may only become less; beyond seat_mm there may be none.
   double allowed = std::min(around.at({}).mm, 0.);
   for (double s = fine_mm; s <= path_length_mm; s += s < fine_part_mm ? fine_mm : coarse_mm) {
     const Clearance found = around.at({Eigen::Quaterniond::Identity(), s * direction});

@@ -32,7 +32,7 @@ struct SessionPatient {
   std::shared_ptr<const Case> uncut = nullptr;         // before the operation of the plan
   std::shared_ptr<const Operated> operated = nullptr;  // by the plan, which may be empty
   std::vector<SegmentOverlap> overlaps = {};           // at the planned positions
-  std::optional<SurfaceFacts> surfaces = {};
+  std::optional<SurfaceFacts> surfaces = {};           // there in every completed patient
 };
 
 /// A plan without steps for a case.
