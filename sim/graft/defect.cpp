@@ -153,8 +153,8 @@ Defect find_defect(const TriMesh& resected, const std::vector<int>& made_by,
   defect.up = up.normalized();
   for (const int i : {0, 1}) {
     const PlaneFaces& face = faces[i];
-    defect.faces[i] = {face.moment / face.area + kerf_mm(face.step) * face.normal, -face.normal,
-                       face.area};
+    const double kerf = kerf_mm(face.step);
+    defect.faces[i] = {face.moment / face.area + kerf * face.normal, -face.normal, face.area, kerf};
   }
   const Vector3d along = defect.faces[1].point - defect.faces[0].point,
                  middle = 0.5 * (defect.faces[0].point + defect.faces[1].point);
@@ -168,7 +168,10 @@ std::vector<Vector3d> border_curve(const TriMesh& resected, const Defect& defect
   constexpr int stations = 48, passes = 4;
   constexpr double inside = 0.004;  // the ends themselves lie in cut faces
   const DefectFace &first = defect.faces[0], &second = defect.faces[1];
-  const DefectPath path{first.point, second.point, first.normal, -second.normal,
+  const auto in_segment = [](const DefectFace& face) {
+    return Vector3d(face.point + face.kerf_mm * face.normal);
+  };
+  const DefectPath path{in_segment(first), in_segment(second), first.normal, -second.normal,
                         (second.point - first.point).norm()};
   std::vector<Vector3d> curve;
   for (int i = 0; i <= stations; ++i) {

@@ -14,6 +14,7 @@ struct DefectFace {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();    // its middle
   Eigen::Vector3d normal = Eigen::Vector3d::UnitX();  // unit, out of the bone into the defect
   double area_mm2 = 0;
+  double kerf_mm = 0;  // that the saw took between it and the resected segment
 };
 
 /// A gap in the jaw between two plane faces, at the uncut rest.
