@@ -183,11 +183,8 @@ PlanComparison compare_plans(const Operated& first, const Operated& second,
         segment_difference(tree[body].name, X_C2 * X_C1.inverse(), centroid, frame));
   }
   if (comparison.segments.empty()) throw InputError("the plans have no segment of the same name");
-  const auto table = [&](const Operated& operated) {
-    return movement_table(operated.patient.landmarks, frame, operated.patient.bodies,
-                          operated.owners, operated.poses);
-  };
-  const MovementTable here = table(first), there = table(second);
+  const MovementTable here = planned_movements(first, frame),
+                      there = planned_movements(second, frame);
   for (const MovementRow& row : here.rows)
     for (const MovementRow& other : there.rows)
       if (row.landmark == other.landmark)
@@ -226,9 +223,8 @@ PlanComparison compare_with_case(const Operated& planned, const Case& achieved,
         segment_difference(name, X_AP.inverse() * fit.X_BA, centroid_of_points(surface), frame));
     comparison.segments.back().rms_mm = fit.rms_mm;
   }
-  const Landmarks now = moved_landmarks(planned.patient.landmarks, planned.owners, planned.poses);
-  for (const MovementRow& row :
-       movement_table(planned.patient.landmarks, frame, tree, planned.owners, planned.poses).rows)
+  const Landmarks now = planned_landmarks(planned);
+  for (const MovementRow& row : planned_movements(planned, frame).rows)
     if (const auto point = achieved.landmarks.find(row.landmark)) {
       const Vector3d off = frame.components(X_AP.inverse() * *point - *now.find(row.landmark));
       comparison.landmarks.push_back({row.label, row.landmark, off.x(), -off.y(), off.z()});

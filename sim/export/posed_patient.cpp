@@ -113,11 +113,8 @@ std::vector<SlicerMarkup> measure_markups(const Scene& scene, const FrameState& 
     add_profile_angle(markups, "SNB", now, "b_point", clinical);
     if (operated) {
       const Landmarks& before = operated->patient.landmarks;
-      const MovementTable table = movement_table(before, clinical, operated->patient.bodies,
-                                                 operated->owners, operated->poses);
-      const Landmarks planned = moved_landmarks(
-          before, operated->owners, completed(operated->patient.bodies, operated->poses));
-      for (const MovementRow& row : table.rows)
+      const Landmarks planned = planned_landmarks(*operated);
+      for (const MovementRow& row : planned_movements(*operated, clinical).rows)
         if (row.distance_mm() > 0.05)
           add_line(markups, row.label + " planned", {"before", *before.find(row.landmark)},
                    {"after", *planned.find(row.landmark)});

@@ -131,6 +131,27 @@ TriMesh moved_mesh(TriMesh mesh, const Pose& X) {
   return mesh;
 }
 
+/// Removes findings of teeth and foramina that leave the patient.
+void drop_resected(const Operated& operated, std::vector<DangerFinding>& findings) {
+  std::set<std::string> zones;
+  for (const Resection& resection : operated.resections)
+    for (const int fdi : resection.teeth) zones.insert(fmt::format("tooth {}", fdi));
+  for (std::string name : operated.resected_landmarks) {
+    std::replace(name.begin(), name.end(), '_', ' ');
+    zones.insert(std::move(name));
+  }
+  std::erase_if(findings, [&](const DangerFinding& finding) {
+    return (finding.kind == ZoneKind::tooth || finding.kind == ZoneKind::foramen) &&
+           zones.contains(finding.zone);
+  });
+}
+
+/// Landmarks of a jaw that moves, whether or not its bone is there.
+bool measures_motion(const std::string& landmark) {
+  return landmark == "lower_incisal_point" || landmark == "left_condyle" ||
+         landmark == "right_condyle";
+}
+
 }  // namespace
 
 bool CutReport::is_dangerous() const {
@@ -169,6 +190,8 @@ Operated apply_cuts(const Case& patient, const Plan& plan) {
   }
   const OwnerFinder finder(patient, operated.patient);
   operated.owners = landmark_owners(patient, finder);
+  operated.resected_landmarks = resected_landmarks(patient, finder, operated);
+  for (CutReport& cut : operated.cuts) drop_resected(operated, cut.dangers);
   operated.muscles = muscle_owners(patient, finder);
   operated.patient.jaw = jaw_bodies(patient, operated.patient, finder);
   for (const PlanStep& step : plan.steps)  // what was there owns landmarks and muscles
@@ -182,6 +205,7 @@ Operated with_moves(Operated cuts, const Plan& plan) {
   check_plan(plan);
   pose_bodies(plan, cuts);
   trim_segments(cuts, plan);
+  for (TrimReport& trim : cuts.trims) drop_resected(cuts, trim.dangers);
   return cuts;
 }
 
@@ -225,8 +249,23 @@ Vector3d rotation_point(const Operated& operated, const std::string& segment,
   return point_of(move, segment, patient.landmarks, centroid_of(patient, *body));
 }
 
+Landmarks planned_landmarks(const Operated& operated) {
+  Landmarks planned = moved_landmarks(operated.patient.landmarks, operated.owners,
+                                      completed(operated.patient.bodies, operated.poses));
+  for (const std::string& name : operated.resected_landmarks) planned.points.erase(name);
+  return planned;
+}
+
+MovementTable planned_movements(const Operated& operated, const ClinicalFrame& frame) {
+  Landmarks present = operated.patient.landmarks;
+  for (const std::string& name : operated.resected_landmarks) present.points.erase(name);
+  return movement_table(present, frame, operated.patient.bodies, operated.owners, operated.poses);
+}
+
 Case operated_case(const Operated& operated) {
   Case patient = operated.patient;
+  for (const std::string& name : operated.resected_landmarks)
+    if (!measures_motion(name)) patient.landmarks.points.erase(name);
   const BodyPoses& at = operated.poses;
   const auto is_moved = [&](BodyId body) { return !bit_identical(at[body], {}); };
   bool moved = false;

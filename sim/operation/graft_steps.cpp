@@ -1,6 +1,7 @@
 #include "sim/operation/graft_steps.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -318,6 +319,13 @@ std::vector<std::string> graft_overlaps(const Operated& operated, const GraftLay
     }
   }
   return texts;
+}
+
+std::string resection_sentence(const Resection& resection) {
+  return fmt::format("resected: {}, {:.1f} cm³{}", resection.segment, resection.volume_mm3 / 1000,
+                     resection.teeth.empty()
+                         ? ""
+                         : fmt::format(", with the teeth {}", fmt::join(resection.teeth, ", ")));
 }
 
 std::vector<std::string> graft_sentences(const Operated& operated, const GraftLayout& graft) {

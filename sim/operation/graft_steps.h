@@ -32,6 +32,9 @@ std::vector<GraftFaceReport> graft_faces(const Operated& operated, const GraftLa
 /// mandible overlap by 0.4 mm".
 std::vector<std::string> graft_overlaps(const Operated& operated, const GraftLayout& graft);
 
+/// "resected: tumour, 19.3 cm³, with the teeth 31, 32".
+std::string resection_sentence(const Resection& resection);
+
 /// A graft in sentences: pieces with lengths and saw cuts, faces, warnings.
 std::vector<std::string> graft_sentences(const Operated& operated, const GraftLayout& graft);
 

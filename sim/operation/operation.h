@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -35,8 +36,9 @@ struct CutReport {
   std::vector<CutOutcome> outcomes;            // by cut
   std::vector<std::pair<int, int>> crossings;  // cuts whose walls cross in the bone
   std::vector<CutPiece> pieces;                // what stays comes first
-  std::vector<DangerFinding> dangers;          // zones near the cut faces, nearest first
-  double volume_mm3 = 0;                       // of the bone before it
+  std::vector<DangerFinding>
+      dangers;            // zones near the cut faces, nearest first, without resected ones
+  double volume_mm3 = 0;  // of the bone before it
   double kerf_volume_mm3 = 0;
   int turned = 0;              // triangles of cut faces that face backward
   bool below_margins = false;  // allowed by the step
@@ -66,7 +68,7 @@ struct TrimReport {
   int fragments = 0;
   double before_mm3 = 0, after_mm3 = 0;  // volume of the bone
   int pieces = 1;                        // separate ones that remain
-  std::vector<DangerFinding> dangers;    // zones near the new faces, nearest first
+  std::vector<DangerFinding> dangers;    // as those of cuts
   bool below_margins = false;            // allowed by the step
   std::vector<std::string> notes;
 
@@ -119,6 +121,7 @@ struct Operated {
   std::map<std::string, std::vector<CutSide>> sides;  // by body, of the first saw cuts; others
                                                       // passed it by
   LandmarkOwners owners;                              // after the cuts
+  std::set<std::string> resected_landmarks;           // nearer to resected bone or teeth
   std::vector<MuscleOwners> muscles;                  // of the patient's muscles, in their order
   std::map<std::string, SurfaceOrigin> origin;        // by part, of bones that a cut changed
   std::vector<std::string> notes;
@@ -150,8 +153,15 @@ Pose planned_pose(const Operated& operated, const Plan& plan, const MoveStep& st
 Eigen::Vector3d rotation_point(const Operated& operated, const std::string& segment,
                                const ClinicalMove& move);
 
+/// The landmarks at their planned positions, without those of resected bone and teeth.
+Landmarks planned_landmarks(const Operated& operated);
+
+/// Displacements by the plan, without landmarks of resected bone and teeth.
+MovementTable planned_movements(const Operated& operated, const ClinicalFrame& frame);
+
 /// The patient after the operation: surfaces, landmarks, canals and muscles at their planned
-/// positions, which are its new rest. The face is as before.
+/// positions, which are its new rest. The face is as before. Landmarks of resected bone are absent,
+/// except those by which a motion of the jaw is measured.
 Case operated_case(const Operated& operated);
 
 }  // namespace condyle

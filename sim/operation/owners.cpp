@@ -92,7 +92,10 @@ BodyId OwnerFinder::same(BodyId uncut_body) const {
   return operated_.bodies.find(uncut_.bodies[uncut_body].name).value_or(cranium_body);
 }
 
-LandmarkOwners landmark_owners(const Case& uncut, const OwnerFinder& finder) {
+namespace {
+
+/// The bodies that own landmarks before cuts.
+LandmarkOwners uncut_owners(const Case& uncut) {
   constexpr double near_mm = 3;
   NearestSurface bones, faces;
   for (const Part& part : uncut.parts) {
@@ -110,9 +113,40 @@ LandmarkOwners landmark_owners(const Case& uncut, const OwnerFinder& finder) {
       if (!faces.empty() && std::abs(faces.at(point).distance) < bone.distance) continue;
       owners[name] = BodyId{bone.value};
     }
-    owners[name] = finder.owner(owners[name], point);
   }
   return owners;
+}
+
+}  // namespace
+
+LandmarkOwners landmark_owners(const Case& uncut, const OwnerFinder& finder) {
+  LandmarkOwners owners = uncut_owners(uncut);
+  for (auto& [name, body] : owners) body = finder.owner(body, uncut.landmarks.points.at(name));
+  return owners;
+}
+
+std::set<std::string> resected_landmarks(const Case& uncut, const OwnerFinder& finder,
+                                         const Operated& operated) {
+  std::map<BodyId, NearestSurface> resected, remaining;  // by body of the uncut case
+  for (const Resection& resection : operated.resections)
+    for (const Part& whole : uncut.parts)
+      if (whole.name == resection.origin.part)
+        for (const Part& part : resection.parts)
+          if (collides(part.role)) resected[whole.body].add(part.mesh, 0);
+  std::set<std::string> names;
+  if (resected.empty()) return names;
+  for (const Part& part : operated.patient.parts)
+    if (const BodyId body = finder.origin(part.body);
+        collides(part.role) && resected.contains(body))
+      remaining[body].add(part.mesh, 0);
+  for (const auto& [name, body] : uncut_owners(uncut)) {
+    const Vector3d& point = uncut.landmarks.points.at(name);
+    if (const auto found = resected.find(body);
+        found != resected.end() &&
+        found->second.at(point).distance < remaining[body].at(point).distance)
+      names.insert(name);
+  }
+  return names;
 }
 
 JawBodies jaw_bodies(const Case& uncut, const Case& operated, const OwnerFinder& finder) {

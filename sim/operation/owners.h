@@ -2,6 +2,7 @@
 
 #include <limits>
 #include <map>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -60,6 +61,11 @@ class OwnerFinder {
 /// their arch, others by the nearest bone or tooth, within 3 mm of it and farther from the face.
 /// Others have no owner.
 LandmarkOwners landmark_owners(const Case& uncut, const OwnerFinder& finder);
+
+/// Those that are nearer to a resected segment than to what remains of the body from which it was
+/// cut.
+std::set<std::string> resected_landmarks(const Case& uncut, const OwnerFinder& finder,
+                                         const Operated& operated);
 
 /// The jaw's bodies after the cuts: arches by their teeth, else the incisal points, condyles by
 /// their landmarks.

@@ -83,11 +83,9 @@ class OperationPageWriter {
         overlaps_(segment_overlaps(page.operated)) {
     if (!frame_) return;
     const Landmarks& before = operated_.patient.landmarks;
-    movements_ = movement_table(before, *frame_, operated_.patient.bodies, operated_.owners,
-                                operated_.poses);
-    const Landmarks after = page.prediction
-                                ? predicted_landmarks(*page.prediction)
-                                : moved_landmarks(before, operated_.owners, operated_.poses);
+    movements_ = planned_movements(operated_, *frame_);
+    const Landmarks after =
+        page.prediction ? predicted_landmarks(*page.prediction) : planned_landmarks(operated_);
     measures_ = cephalometry(*frame_, before, after);
   }
 
@@ -98,7 +96,8 @@ class OperationPageWriter {
     pictures(page_.bones, "wide");
     movements();
     table("Cephalometry", cephalometry_table(measures_, page_.prediction != nullptr),
-          "* outside its norm. Norms: published means of European adults with one standard "
+          "* outside its norm; - not measured, because a landmark is resected. Norms: published "
+          "means of European adults with one standard "
           "deviation; they are for comparison, not a target.");
     contacts();
     dangers();

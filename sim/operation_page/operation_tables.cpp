@@ -37,7 +37,7 @@ std::string point_words(std::string words) {
 
 /// Whether the value after the operation lies outside its norm, as it is printed.
 bool is_off(const CephalometricMeasure& measure) {
-  return measure.norm.sd > 0 &&
+  return measure.after && measure.norm.sd > 0 &&
          std::abs(*measure.after - measure.norm.mean) > measure.norm.sd + 0.05;
 }
 
@@ -103,12 +103,15 @@ PageTable movements_table(const MovementTable& movements) {
 PageTable cephalometry_table(const std::vector<CephalometricMeasure>& measures, bool has_soft) {
   PageTable table{{"Measure", "Before", "After", "Change", "Norm"}, {}};
   for (const CephalometricMeasure& measure : measures) {
-    if (!measure.before || !measure.after || (is_soft(measure) && !has_soft)) continue;
+    if (!measure.before || (is_soft(measure) && !has_soft)) continue;
     const std::string unit = measure.unit == "deg" ? "°" : " " + measure.unit;
-    table.rows.push_back(
-        {measure.name, signed_number(*measure.before, "{:.1f}") + unit,
-         signed_number(*measure.after, "{:.1f}") + unit + (is_off(measure) ? " *" : ""),
-         signed_number(*measure.change(), "{:+.1f}"), norm_text(measure.norm)});
+    const auto value = [&](const std::optional<double>& number, const char* format) {
+      return number ? signed_number(*number, format) : std::string("-");
+    };
+    table.rows.push_back({measure.name, value(measure.before, "{:.1f}") + unit,
+                          value(measure.after, "{:.1f}") + (measure.after ? unit : "") +
+                              (is_off(measure) ? " *" : ""),
+                          value(measure.change(), "{:+.1f}"), norm_text(measure.norm)});
   }
   return table;
 }

@@ -261,7 +261,8 @@ std::string cephalometry_text(const std::vector<CephalometricMeasure>& measures)
                     norm_text(measure.norm), measure.norm.source});
   }
   std::string text = aligned_columns(rows, "llrrrll");
-  if (!missing.empty()) text += "\nNot measured, because landmarks are missing\n" + missing;
+  if (!missing.empty())
+    text += "\nNot measured, because landmarks are missing or resected\n" + missing;
   return text;
 }
 

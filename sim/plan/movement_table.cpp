@@ -75,8 +75,8 @@ void add_cant(MovementTable& table, const char* label, const char* pattern,
     if (!left || !right) return std::nullopt;
     return -frame.up.dot(*left - *right);
   };
-  if (const auto before = lower_on_left(rest))
-    table.midlines.push_back({label, true, *before, *lower_on_left(now)});
+  const auto before = lower_on_left(rest), after = lower_on_left(now);
+  if (before && after) table.midlines.push_back({label, true, *before, *after});
 }
 
 std::string midline_words(const MidlineRow& row, double value) {

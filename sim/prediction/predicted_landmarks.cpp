@@ -3,9 +3,7 @@
 namespace condyle {
 
 Landmarks predicted_landmarks(const Prediction& prediction) {
-  const Operated& operated = prediction.operated;
-  Landmarks landmarks =
-      moved_landmarks(operated.patient.landmarks, operated.owners, operated.poses);
+  Landmarks landmarks = planned_landmarks(prediction.operated);
   for (const SoftPoint& point : prediction.points) landmarks.points[point.landmark] = point.after;
   return landmarks;
 }

@@ -117,8 +117,7 @@ std::vector<std::string> ratios_outside(const std::vector<SoftRatio>& ratios) {
 std::vector<SoftRatio> soft_ratios(const Prediction& prediction, const ClinicalFrame& frame) {
   constexpr double least_mm = 0.5;
   const Landmarks& rest = prediction.operated.patient.landmarks;
-  const Landmarks moved =
-      moved_landmarks(rest, prediction.operated.owners, prediction.operated.poses);
+  const Landmarks moved = planned_landmarks(prediction.operated);
   const auto moves = [&](const char* landmark) {
     const auto before = rest.find(landmark), after = moved.find(landmark);
     return before && after && (*after - *before).norm() > least_mm;

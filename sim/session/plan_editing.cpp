@@ -323,9 +323,7 @@ void add_tables(PlanView& view, const Plan& plan, const Operated& operated) {
     view.findings.push_back(fmt::format("no tables: {}", error.what()));
     return;
   }
-  const MovementTable table =
-      movement_table(before, frame, operated.patient.bodies, operated.owners, operated.poses);
-  for (const MovementRow& row : table.rows) {
+  for (const MovementRow& row : planned_movements(operated, frame).rows) {
     if (row.distance_mm() < 0.05) continue;
     std::string words;
     for (const std::string& each :
@@ -335,7 +333,7 @@ void add_tables(PlanView& view, const Plan& plan, const Operated& operated) {
     view.displacements.push_back({row.label, "", words, ""});
   }
   for (const CephalometricMeasure& measure :
-       cephalometry(frame, before, moved_landmarks(before, operated.owners, operated.poses))) {
+       cephalometry(frame, before, planned_landmarks(operated))) {
     if (!measure.before || !measure.after) continue;
     const auto number = [&](double value) {
       return fmt::format("{:.1f}{}", value, measure.unit == "deg" ? "\u00b0" : "");

@@ -65,6 +65,28 @@ TEST(DemoCommand, TheVaultBecomesBroader) {
               whole, 1e-6 * whole);
 }
 
+TEST(DemoCommand, AFibulaTakesThePlaceOfAResectedJaw) {
+  const Folder folder;
+  const std::string out = folder / "out";
+  const auto report = demo("fibula", out);
+  const auto& graft = report["grafts"].at(0);
+  ASSERT_EQ(graft["pieces"].size(), 3u);
+  for (const auto& piece : graft["pieces"]) {
+    EXPECT_TRUE(piece["closed"].get<bool>());
+    EXPECT_GE(piece["length_mm"].get<double>(), 20);  // shorter ones may lose their blood supply
+  }
+  EXPECT_TRUE(graft["warnings"].empty()) << graft["warnings"];
+  for (const auto& face : graft["faces"]) EXPECT_EQ(face["level"], "good") << face;
+  EXPECT_EQ(graft["insertion_path"]["state"], "free");
+  EXPECT_GT(report["opening"]["widest_mm"].get<double>(), 40);
+  const std::string page = read_text(out + "/report.html");
+  for (const char* words : {"resected: tumour", "Insertion path", "Mouth opening", "fibula_3"})
+    EXPECT_NE(page.find(words), std::string::npos) << words;
+  EXPECT_EQ(page.find("<td>L1</td>"), std::string::npos);
+  for (const char* file : {"insertion_path.png", "opening.png"})
+    EXPECT_TRUE(fs::exists(fs::path(out) / file)) << file;
+}
+
 TEST(DemoCommand, AnUnknownNameAndAForeignOptionHaveExitCode2) {
   const Folder folder;
   const Outcome unknown = condyle({"demo", "class-ii", "--out", folder / "out"});

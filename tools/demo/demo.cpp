@@ -51,8 +51,9 @@ void add_demo(Commands& commands) {
       "demo", "Repeat an operation on a built-in patient",
       "condyle demo class-iii --out out/class-iii",
       [options, name](const CommonOptions& common) { return run_demo(*name, *options, common); });
-  std::string what = "One of:";
-  for (const Demo& demo : demos) what += fmt::format("\n{}: {}", demo.name, demo.what);
+  std::string what;
+  for (const Demo& demo : demos)
+    what += fmt::format("{}{} ({})", what.empty() ? "One of " : "; ", demo.name, demo.what);
   command.add_option("NAME", *name, what)->required();
   command
       .add_option("--out", options->out,

@@ -17,7 +17,7 @@ namespace {
 Plan fibula_plan(const Case& patient) {
   Plan plan = begin_plan(patient, "fibula");
   CutStep cut{.osteotomy = "segmental_resection",
-              .parameters = {{"from_tooth", 43}, {"to_tooth", 36}},
+              .parameters = {{"from_tooth", 45}, {"to_tooth", 36}},
               .kerf_mm = 0.5,
               .pieces = {"tumour"},
               .below_margins = true};
@@ -69,10 +69,10 @@ int run_fibula(const DemoOptions& options, const CommonOptions& common) {
   const Case patient = builtin_patient({}, bar.callback());
   const Plan plan = fibula_plan(patient);
   const Operated operated = apply_plan(patient, plan);
-  OperationOutput output(
-      options.out, "Fibula graft",
-      "The lower jaw is resected from the right canine to the left first molar. Three pieces of a "
-      "fibula with mitred faces take its place along the lower border.");
+  OperationOutput output(options.out, "Fibula graft",
+                         "The lower jaw is resected from the right second premolar to the left "
+                         "first molar. Three pieces of a "
+                         "fibula with mitred faces take its place along the lower border.");
   output.add_operation(plan, operated, bar.callback());
   for (const GraftLayout& graft : operated.grafts) {
     output.add_table("Saw cuts on the fibula", saw_table(graft));
@@ -93,7 +93,8 @@ int run_fibula(const DemoOptions& options, const CommonOptions& common) {
     const PlayedMotion played = play_motion(scene, path, settings, play, true, bar.callback());
     output.add_picture("insertion_path.png",
                        path_picture(played, "The graft leaves its seat along the insertion path"),
-                       "The graft leaves its seat along its path.");
+                       "The graft leaves its seat along its path; inserted, it comes back the same "
+                       "way.");
     const Motion opening = make_motion("open; close", scene.patient, scene.contacts);
     const PlayedMotion opened = play_motion(scene, opening, settings, play, true, bar.callback());
     const std::size_t widest = opened.widest();
@@ -103,6 +104,11 @@ int run_fibula(const DemoOptions& options, const CommonOptions& common) {
           {opened.pictures[frame],
            fmt::format("opening {:.1f} mm", opened.frames[frame].measures.opening_mm)});
     output.add_picture("opening.png", draw_grid(grid), "The mouth opens after the operation.");
+    output.add_section(
+        "Mouth opening",
+        fmt::format("After the operation the mouth opens by {:.1f} mm, measured where "
+                    "the lower incisal point was.",
+                    opened.frames[widest].measures.opening_mm));
     output.json["opening"] = {{"widest_mm", opened.frames[widest].measures.opening_mm}};
   });
   bar.clear();

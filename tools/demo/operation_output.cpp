@@ -16,6 +16,7 @@
 #include "sim/case/landmark_files.h"
 #include "sim/frame/part_names.h"
 #include "sim/operation/cut_text.h"
+#include "sim/operation/graft_steps.h"
 #include "sim/operation/segment_overlaps.h"
 #include "sim/operation/trim_segments.h"
 #include "sim/plan/cephalometry.h"
@@ -67,32 +68,26 @@ void OperationOutput::add_operation(const Plan& plan, const Operated& operated,
                   "within {:.1g} %.",
                   json["volume_error_percent"].get<double>()));
   body_ += "<h2>Cuts</h2>\n";
-  for (const CutReport& cut : operated.cuts) {
-    body_ +=
-        "<p><strong>" + escaped(cut.title) + "</strong>, " + escaped(cut.bone) + "</p>\n<ul>\n";
-    for (const std::string& sentence : cut_sentences(cut, operated.patient.landmarks))
-      body_ += "<li>" + escaped(sentence) + "</li>\n";
-    body_ += "</ul>\n";
-  }
-  for (const TrimReport& trim : operated.trims) {
-    body_ +=
-        "<p><strong>" + escaped(trim.title) + "</strong>, " + escaped(trim.part) + "</p>\n<ul>\n";
-    for (const std::string& sentence : trim_sentences(trim))
-      body_ += "<li>" + escaped(sentence) + "</li>\n";
-    body_ += "</ul>\n";
-  }
+  for (const CutReport& cut : operated.cuts)
+    add_list(cut.title + ", " + cut.bone, cut_sentences(cut, operated.patient.landmarks));
+  for (const TrimReport& trim : operated.trims)
+    add_list(trim.title + ", " + trim.part, trim_sentences(trim));
+  if (!operated.resections.empty()) body_ += "<h2>Resections and grafts</h2>\n";
+  for (const Resection& resection : operated.resections)
+    body_ += "<p>" + escaped(resection_sentence(resection)) + "</p>\n";
+  for (const GraftLayout& graft : operated.grafts)
+    add_list("graft " + graft.step.name, graft_sentences(operated, graft));
   add_table("Overlap at the planned positions", overlaps_table(segment_overlaps(operated)));
   for (const std::string& note : operated.notes) add_note(note);
   try {
     const ClinicalFrame frame = clinical_frame(operated.patient.landmarks, plan.reference);
     const Landmarks& before = operated.patient.landmarks;
-    add_table("Movements of the bone",
-              movements_table(movement_table(before, frame, operated.patient.bodies,
-                                             operated.owners, operated.poses)));
-    const Landmarks planned =
-        soft ? *soft : moved_landmarks(before, operated.owners, operated.poses);
-    add_table("Cephalometry", cephalometry_table(cephalometry(frame, before, planned), !!soft),
-              "Norms: published means of European adults with one standard deviation.");
+    add_table("Movements of the bone", movements_table(planned_movements(operated, frame)));
+    const Landmarks planned = soft ? *soft : planned_landmarks(operated);
+    add_table(
+        "Cephalometry", cephalometry_table(cephalometry(frame, before, planned), !!soft),
+        "* outside its norm; - not measured, because a landmark is resected. Norms: published "
+        "means of European adults with one standard deviation.");
   } catch (const InputError& error) {
     add_note(fmt::format("tables of movements and cephalometry are left out: {}", error.what()));
   }
@@ -121,6 +116,13 @@ void OperationOutput::add_picture(const std::string& file, const Image& image,
   body_ +=
       fmt::format("<figure><img src=\"{0}\" alt=\"{1}\"><figcaption>{1}</figcaption></figure>\n",
                   file, escaped(caption));
+}
+
+void OperationOutput::add_list(const std::string& title,
+                               const std::vector<std::string>& sentences) {
+  body_ += "<p><strong>" + escaped(title) + "</strong></p>\n<ul>\n";
+  for (const std::string& sentence : sentences) body_ += "<li>" + escaped(sentence) + "</li>\n";
+  body_ += "</ul>\n";
 }
 
 void OperationOutput::add_section(const std::string& heading, const std::string& text) {

@@ -48,6 +48,8 @@ class OperationOutput {
   void finish(bool print_summary);
 
  private:
+  void add_list(const std::string& title, const std::vector<std::string>& sentences);
+
   std::filesystem::path folder_;
   std::string title_, introduction_, body_;
   std::vector<std::string> notes_;

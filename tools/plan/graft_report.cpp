@@ -1,7 +1,6 @@
 #include "tools/plan/graft_report.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "engine/mesh/topology.h"
 #include "sim/operated/graft_path.h"
@@ -127,11 +126,7 @@ void add_graft_report(Json& report, const Plan& plan, const Operated& operated) 
 std::string graft_report_text(const Plan& plan, const Operated& operated) {
   std::string text;
   for (const Resection& resection : operated.resections)
-    text +=
-        fmt::format("resected: {}, {:.1f} cm³{}\n", resection.segment, resection.volume_mm3 / 1000,
-                    resection.teeth.empty()
-                        ? ""
-                        : fmt::format(", with the teeth {}", fmt::join(resection.teeth, ", ")));
+    text += resection_sentence(resection) + "\n";
   for (const GraftLayout& graft : operated.grafts)
     text += graft_report_text(plan, operated, graft.step.name);
   return text;

@@ -28,15 +28,9 @@ std::optional<ClinicalFrame> frame_of(const Plan& plan, const Operated& operated
   }
 }
 
-MovementTable table_of(const ClinicalFrame& frame, const Operated& operated) {
-  return movement_table(operated.patient.landmarks, frame, operated.patient.bodies, operated.owners,
-                        operated.poses);
-}
-
 std::vector<CephalometricMeasure> measures_of(const ClinicalFrame& frame,
                                               const Operated& operated) {
-  const Landmarks& before = operated.patient.landmarks;
-  return cephalometry(frame, before, moved_landmarks(before, operated.owners, operated.poses));
+  return cephalometry(frame, operated.patient.landmarks, planned_landmarks(operated));
 }
 
 Json outcome_json(const std::string& name, const CutOutcome& outcome) {
@@ -177,7 +171,7 @@ Json plan_report_json(const Plan& plan, const Operated& operated) {
     json["overlaps"].push_back(overlap_json(overlap));
   std::string problem;
   if (const auto frame = frame_of(plan, operated, problem)) {
-    json["movements"] = movement_json(table_of(*frame, operated));
+    json["movements"] = movement_json(planned_movements(operated, *frame));
     json["cephalometry"] = cephalometry_json(measures_of(*frame, operated));
   }
   json["notes"] = operated.notes;
@@ -198,7 +192,7 @@ std::string plan_report_text(const Plan& plan, const Operated& operated) {
   std::string problem;
   if (const auto frame = frame_of(plan, operated, problem))
     text +=
-        "\n" + movement_text(table_of(*frame, operated)) +
+        "\n" + movement_text(planned_movements(operated, *frame)) +
         "\nCephalometry (of the face: before the operation; condyle predict has it afterwards)\n" +
         cephalometry_text(measures_of(*frame, operated));
   else

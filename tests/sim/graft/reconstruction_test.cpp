@@ -11,6 +11,7 @@
 #include "sim/graft/graft.h"
 #include "sim/operation/graft_steps.h"
 #include "sim/operation/operation.h"
+#include "sim/plan/cephalometry.h"
 #include "sim/plan/plan_file.h"
 #include "tests/support/builtin.h"
 
@@ -19,12 +20,12 @@ using condyle::test::builtin;
 
 namespace {
 
-Plan resected() {
+Plan resected(int from_tooth = 34, int to_tooth = 37) {
   Plan plan;
   plan.name = "reconstruction";
   plan.geometry = geometry_of(builtin());
   CutStep cut{.osteotomy = "segmental_resection",
-              .parameters = {{"from_tooth", 34}, {"to_tooth", 37}},
+              .parameters = {{"from_tooth", from_tooth}, {"to_tooth", to_tooth}},
               .kerf_mm = 0.5,
               .pieces = {"tumour"},
               .below_margins = true};
@@ -64,6 +65,65 @@ TEST(Reconstruction, removes_the_segment_with_its_teeth_and_leaves_two_hosts) {
   EXPECT_FALSE(teeth.contains(35));
   EXPECT_TRUE(teeth.contains(33));
   EXPECT_TRUE(teeth.contains(45));
+}
+
+TEST(Reconstruction, leaves_out_landmarks_and_dangers_of_what_was_resected) {
+  const Operated operated = apply_plan(builtin(), resected(43, 36));
+  const Landmarks planned = planned_landmarks(operated);
+  for (const char* gone :
+       {"pogonion", "menton", "b_point", "lower_incisal_point", "lower_left_canine_tip"})
+    EXPECT_FALSE(planned.find(gone)) << gone;
+  for (const char* there : {"left_gonion", "upper_incisal_point", "soft_pogonion",
+                            "lower_right_first_molar_mesiobuccal_cusp"})
+    EXPECT_TRUE(planned.find(there)) << there;
+  const ClinicalFrame frame = clinical_frame(builtin().landmarks);
+  const MovementTable table = planned_movements(operated, frame);
+  const auto has_row = [&](const char* label) {
+    return std::any_of(table.rows.begin(), table.rows.end(),
+                       [&](const MovementRow& row) { return row.label == label; });
+  };
+  EXPECT_FALSE(has_row("L1"));
+  EXPECT_FALSE(has_row("Pog"));
+  EXPECT_TRUE(has_row("U1"));
+  EXPECT_TRUE(has_row("L6 right"));
+  for (const MidlineRow& row : table.midlines) EXPECT_NE(row.label, "lower midline");
+  for (const CephalometricMeasure& measure :
+       cephalometry(frame, operated.patient.landmarks, planned)) {
+    if (measure.name == "SNA") {
+      EXPECT_TRUE(measure.after);
+    }
+    if (measure.name == "SNB" || measure.name == "overjet") {
+      EXPECT_TRUE(measure.before) << measure.name;
+      EXPECT_FALSE(measure.after) << measure.name;
+    }
+  }
+  std::set<std::string> zones;
+  for (const DangerFinding& finding : operated.cuts[0].dangers) zones.insert(finding.zone);
+  EXPECT_FALSE(zones.contains("tooth 43"));
+  EXPECT_FALSE(zones.contains("tooth 36"));
+  EXPECT_FALSE(zones.contains("left mental foramen"));
+  EXPECT_TRUE(zones.contains("tooth 37"));
+  EXPECT_TRUE(zones.contains("left mandibular canal"));
+  const Case after = operated_case(operated);
+  EXPECT_FALSE(after.landmarks.find("pogonion"));
+  EXPECT_TRUE(after.landmarks.find("lower_incisal_point"));  // motions are measured by it
+}
+
+TEST(Reconstruction, follows_the_border_around_the_chin) {
+  // Planes near one face of these defects meet the other limb, too.
+  for (const auto& [from, to] : {std::pair{44, 36}, std::pair{43, 37}, std::pair{45, 36}}) {
+    const Operated operated = apply_plan(builtin(), with_step(resected(from, to), fibula(3)));
+    ASSERT_TRUE(operated.problems.empty()) << operated.problems[0];
+    const GraftLayout& graft = operated.grafts.at(0);
+    for (const int i : {0, 1}) {
+      const Eigen::Vector3d& end = i == 0 ? graft.curve.front() : graft.curve.back();
+      EXPECT_LT((end - graft.defect.faces[i].point).norm(), 20) << from << " to " << to;
+    }
+    double longest = 0;
+    for (std::size_t i = 1; i < graft.curve.size(); ++i)
+      longest = std::max(longest, (graft.curve[i] - graft.curve[i - 1]).norm());
+    EXPECT_LT(longest, 5) << from << " to " << to;
+  }
 }
 
 TEST(Reconstruction, lays_pieces_that_meet_the_jaw_and_each_other) {
