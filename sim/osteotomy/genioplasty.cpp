@@ -96,31 +96,52 @@ PlacedOsteotomy place_genioplasty(Site& site) {
     throw InputError(fmt::format(
         "genioplasty: {:.1f} mm of chin are left below roots, foramina and canal; 4 are needed",
         height - menton.z()));
-  // From foramen to foramen flat, then falling to the border and as much beyond it.
-  const double leaves = border.z() + fall * (border.y() - front);
-  const double out = std::max(border.x(), foramen.x() + 5);
-  const double slope = std::max(0.2, (height - leaves) / (out - foramen.x()));
-  const double far = out + 15;
-  const Vector3d end(far, front, height - slope * (far - foramen.x())),
-      bend(foramen.x(), front, height);
-  const auto mirrored = [](const Vector3d& p) { return Vector3d(-p.x(), p.y(), p.z()); };
-  const std::vector<Vector3d> line = {mirrored(end), mirrored(bend), bend, end};
-  Cut cut{"genioplasty", jaw.sheet(line, {0, 1, -fall}, -Vector3d::UnitZ(), 0),
+  // From bend to bend flat, then falling to the border and as much beyond it.
+  const Vector3d along(0, 1, -fall);
+  const double out = std::max(border.x(), foramen.x() + 5), far = out + 15;
+  std::vector<Vector3d> line(4);  // from the right to the left
+  std::vector<CutStation> stations;
+  for (const Side side : both_sides) {
+    const std::string bend_name = name_of(side) + "_bend_mm", end_name = name_of(side) + "_end_mm";
+    const double bend = std::clamp(foramen.x() + site[bend_name], 2.0, out - 3),
+                 leaves = border.z() + site[end_name] + fall * (border.y() - front),
+                 slope = std::max(0.2, (height - leaves) / (out - bend));
+    const Vector3d turn(sign_of(side) * bend, front, height);
+    line[side == Side::left ? 2 : 1] = turn;
+    line[side == Side::left ? 3 : 0] =
+        Vector3d(sign_of(side) * far, front, height - slope * (far - bend));
+    stations.push_back(jaw.station(bend_name, turn + (foramen.y() - front) * along,
+                                   sign_of(side) * Vector3d::UnitX()));
+    const Vector3d end(sign_of(side) * out, front, height - slope * (out - bend));
+    stations.push_back(
+        jaw.station(end_name, end + (border.y() - front) * along, Vector3d::UnitZ()));
+  }
+  Cut cut{"genioplasty", jaw.sheet(line, along, -Vector3d::UnitZ(), 0),
           jaw.box({-far - 1, front - 20, menton.z() - 25}, {far + 1, front + 60, height + 12}), 0};
-  return {.part = {}, .cuts = {cut}, .segments = {{"chin", {CutSide::above}}}, .notes = {}};
+  return {.part = {},
+          .cuts = {cut},
+          .segments = {{"chin", {CutSide::above}}},
+          .notes = {},
+          .stations = std::move(stations)};
 }
 
 }  // namespace
 
 Recipe genioplasty_recipe() {
-  return {"genioplasty",
-          Jaw::lower,
-          {{"height_mm", "mm", "height of the flat part above menton", 14.5, 6, 25},
-           {"tilt_deg", "deg", "fall of the cut towards the back", 8.5, -10, 25},
-           {"root_margin_mm", "mm", "least distance from roots", 5, 3, 12},
-           {"foramen_margin_mm", "mm", "least distance from the mental foramina", 5, 3, 12},
-           {"canal_margin_mm", "mm", "least distance from the wall of the canal", 2, 1, 6}},
-          place_genioplasty};
+  return {
+      "genioplasty",
+      Jaw::lower,
+      {{"height_mm", "mm", "height of the flat part above menton", 14.5, 6, 25},
+       {"tilt_deg", "deg", "fall of the cut towards the back", 8.5, -10, 25},
+       {"left_bend_mm", "mm", "bend on the left, outside the mental foramen", 0, -12, 12},
+       {"right_bend_mm", "mm", "bend on the right, outside the mental foramen", 0, -12, 12},
+       {"left_end_mm", "mm", "end on the left, above the border below the first molar", 0, -12, 12},
+       {"right_end_mm", "mm", "end on the right, above the border below the first molar", 0, -12,
+        12},
+       {"root_margin_mm", "mm", "least distance from roots", 5, 3, 12},
+       {"foramen_margin_mm", "mm", "least distance from the mental foramina", 5, 3, 12},
+       {"canal_margin_mm", "mm", "least distance from the wall of the canal", 2, 1, 6}},
+      place_genioplasty};
 }
 
 }  // namespace condyle

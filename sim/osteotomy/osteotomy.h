@@ -17,6 +17,13 @@ struct SegmentRule {
   std::vector<CutSide> sides;  // one per cut
 };
 
+/// A place of a cut that one parameter moves, such as a bend or a station of its sheet.
+struct CutStation {
+  std::string parameter;
+  Eigen::Vector3d at = Eigen::Vector3d::Zero();        // in the cranium's frame, at rest
+  Eigen::Vector3d per_unit = Eigen::Vector3d::Zero();  // how the parameter displaces it
+};
+
 /// An osteotomy in place on a patient's bone: ready to cut.
 struct PlacedOsteotomy {
   std::string part;                     // name of the bone that is cut
@@ -25,6 +32,7 @@ struct PlacedOsteotomy {
   std::vector<std::string> notes;       // what was estimated, for people
   std::vector<std::string> rooms = {};  // between the teeth of interdental cuts, for people
   std::vector<int> removed_teeth = {};  // FDI numbers: leave with a segment, and may be divided
+  std::vector<CutStation> stations = {};
 };
 
 /// The segment that a piece belongs to; -1: it stays with the bone's own body.

@@ -18,7 +18,8 @@ constexpr double clear_of_bone_mm = 60;
 /// Where the split passes the bone of one side, from back to front.
 struct Stations {
   Vector3d hind, lingula, front, buccal;
-  Vector3d rising;  // the ramus' own direction, along which the sheet is extruded
+  Vector3d rising;   // the ramus' own direction, along which the sheet is extruded
+  Vector3d on_body;  // the buccal station at the height of the body
 };
 
 /// Inclination of the outer surface between two heights, averaged over three places.
@@ -98,8 +99,16 @@ Stations find_stations(const Site& site, Side side, const Ramus& ramus, double b
   stations.hind = station(ramus.back - 4, high, false);
   stations.lingula = station(ramus.lingula.y(), high, false);
   stations.front = station(ramus.front + 3, high, false);
-  stations.buccal = station(buccal_y, 0.5 * (high + low + 12) - 4, true);
+  const double body_z = 0.5 * (high + low + 12) - 4;
+  stations.buccal = station(buccal_y, body_z, true);
   thicken_plate(site, side, stations, high, low + 14);
+  const std::pair<Vector3d*, const char*> shifted[] = {{&stations.hind, "_ramus_mm"},
+                                                       {&stations.lingula, "_ramus_mm"},
+                                                       {&stations.front, "_front_mm"},
+                                                       {&stations.buccal, "_body_mm"}};
+  for (const auto& [place, name] : shifted)
+    place->x() += sign_of(side) * site[name_of(side) + name];
+  stations.on_body = stations.buccal + stations.rising * ((body_z - top) / stations.rising.z());
   return stations;
 }
 
@@ -115,7 +124,7 @@ double buccal_place(SurgicalAnatomy& jaw, Side side, double back_mm) {
   return jaw.need("lower_incisal_point").y() + 38 + back_mm;
 }
 
-Cut split_cut(Site& site, Side side) {
+Cut split_cut(Site& site, Side side, std::vector<CutStation>& stations) {
   SurgicalAnatomy& jaw = site.anatomy;
   const double sign = sign_of(side);
   const Ramus ramus = find_ramus(jaw, side);
@@ -126,13 +135,22 @@ Cut split_cut(Site& site, Side side) {
   const Vector3d backward = (at.hind - at.lingula).normalized(),
                  forward = (at.buccal - at.front).normalized();
   const Vector3d front_end = at.buccal + 8 * forward;
+  // Behind the lingula Hunsuck's split turns inward and leaves through the medial cortex.
+  const bool full = site["full"] != 0;
+  const Vector3d turn = at.lingula + site["behind_lingula_mm"] * backward;
+  // On the ramus below the medial cut, above which there is no split.
+  const Vector3d below = -5 * at.rising;
+  const std::pair<Vector3d, const char*> places[] = {
+      {(full ? at.lingula : turn) + below, "_ramus_mm"},
+      {at.front + below, "_front_mm"},
+      {at.on_body, "_body_mm"}};
+  for (const auto& [place, name] : places)
+    stations.push_back(jaw.station(name_of(side) + name, place, sign * Vector3d::UnitX()));
   std::vector<Vector3d> line;
   Vector3d outside(sign, 0, 0);
-  if (site["full"] != 0) {
+  if (full) {
     line = {at.hind + 11 * backward, at.lingula, at.front, at.buccal, front_end};
   } else {
-    // Behind the lingula it turns inward and leaves through the medial cortex.
-    const Vector3d turn = at.lingula + site["behind_lingula_mm"] * backward;
     line = {turn + Vector3d(-25 * sign, 6, 0), turn, at.front, at.buccal, front_end};
     outside = Vector3d::UnitY();
   }
@@ -153,10 +171,11 @@ Cut split_cut(Site& site, Side side) {
 }
 
 PlacedOsteotomy place_sagittal_split(Site& site) {
-  return {.part = {},
-          .cuts = {split_cut(site, Side::left), split_cut(site, Side::right)},
-          .segments = proximal_and_distal(),
-          .notes = {}};
+  PlacedOsteotomy placed;
+  for (const Side side : {Side::left, Side::right})
+    placed.cuts.push_back(split_cut(site, side, placed.stations));
+  placed.segments = proximal_and_distal();
+  return placed;
 }
 
 }  // namespace
@@ -170,6 +189,14 @@ Recipe sagittal_split_recipe() {
        {"full", "", "1: the split runs through the posterior border; 0: it ends as Hunsuck's", 0, 0,
         1},
        {"buccal_back_mm", "mm", "buccal cut behind the middle of the second molar", 0, -12, 12},
+       {"left_ramus_mm", "mm", "split farther out behind the lingula, on the left", 0, -5, 5},
+       {"left_front_mm", "mm", "split farther out at the front of the ramus, on the left", 0, -5,
+        5},
+       {"left_body_mm", "mm", "split farther out in the body, on the left", 0, -5, 5},
+       {"right_ramus_mm", "mm", "split farther out behind the lingula, on the right", 0, -5, 5},
+       {"right_front_mm", "mm", "split farther out at the front of the ramus, on the right", 0, -5,
+        5},
+       {"right_body_mm", "mm", "split farther out in the body, on the right", 0, -5, 5},
        {"plate_mm", "mm", "thickness of bone outside the split that is kept where it can be", 0.5,
         0, 4},
        {"canal_margin_mm", "mm", "distance from the wall of the canal that is kept where it can be",

@@ -112,6 +112,11 @@ Region SurgicalAnatomy::sheet(std::span<const Vector3d> polyline, const Vector3d
   return beyond_sheet(points, frame_.vector(direction), frame_.vector(side), first_wall);
 }
 
+CutStation SurgicalAnatomy::station(std::string parameter, const Vector3d& at,
+                                    const Vector3d& per_unit) const {
+  return {std::move(parameter), frame_.origin + frame_.vector(at), frame_.vector(per_unit)};
+}
+
 std::vector<Plane> SurgicalAnatomy::box(const Vector3d& low, const Vector3d& high) const {
   std::vector<Plane> planes;
   for (int axis = 0; axis < 3; ++axis) {

@@ -8,6 +8,7 @@
 
 #include "engine/cut/region.h"
 #include "sim/case/case.h"
+#include "sim/osteotomy/osteotomy.h"
 #include "sim/plan/clinical_frame.h"
 
 namespace condyle {
@@ -51,6 +52,9 @@ class SurgicalAnatomy {
   Region above(const Eigen::Vector3d& point, const Eigen::Vector3d& normal, int wall) const;
   Region sheet(std::span<const Eigen::Vector3d> polyline, const Eigen::Vector3d& direction,
                const Eigen::Vector3d& side, int first_wall) const;
+  /// A place and a direction of the patient's axes as a station in the case's.
+  CutStation station(std::string parameter, const Eigen::Vector3d& at,
+                     const Eigen::Vector3d& per_unit) const;
   std::vector<Plane> box(const Eigen::Vector3d& low, const Eigen::Vector3d& high) const;
 
   /// Distances from the midsagittal plane at which the line at (y, z) crosses the surface of a

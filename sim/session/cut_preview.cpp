@@ -172,15 +172,25 @@ std::vector<PlanHandle> CutPreviewer::number_handles(const Plan& plan, int id, s
     const Operated& bones = before(plan, id);
     const TriMesh now = cut_faces(bones, cut);
     if (now.empty()) return handles;
-    const std::string bone = place_osteotomy(bones.patient, cut).part;
+    const PlacedOsteotomy placed = place_osteotomy(bones.patient, cut);
     for (const Part& part : bones.patient.parts)
-      if (part.name == bone) body = bones.patient.bodies[part.body].name;
+      if (part.name == placed.part) body = bones.patient.bodies[part.body].name;
     for (const OsteotomyParameter& parameter : osteotomy_parameters(cut.osteotomy)) {
       // A number of pieces or a choice; a margin, which moves a cut only where it holds it back.
       if (parameter.unit.empty() || parameter.name.ends_with("_margin_mm")) continue;
       // Larger, or smaller where that is impossible or danger zones keep the cut in its place.
       const auto set = cut.parameters.find(parameter.name);
       const double value = set == cut.parameters.end() ? parameter.standard : set->second;
+      const auto station =
+          std::find_if(placed.stations.begin(), placed.stations.end(),
+                       [&](const CutStation& each) { return each.parameter == parameter.name; });
+      if (station != placed.stations.end()) {
+        handles.push_back({.at = station->at,
+                           .number = parameter.name,
+                           .per_unit = station->per_unit,
+                           .value = value});
+        continue;
+      }
       for (const double change : {step, -step}) {
         if (value + 2 * change > parameter.high || value + 2 * change < parameter.low) continue;
         const auto effect = effect_of(now, bones, cut, parameter.name, value, change, handles);

@@ -32,8 +32,9 @@ class CutPreviewer {
   /// The cut of a step. What refuses it is in `words.problem`.
   CutPreview preview(const Plan& plan, int step);
 
-  /// Handles of a named osteotomy's numbers: where a cut face moves farthest with a number. Numbers
-  /// that move it by less than 0.2 mm a unit have none. Places at the uncut rest.
+  /// Handles of a named osteotomy's numbers: its stations, and where a cut face moves farthest with
+  /// another number. Numbers that move it by less than 0.2 mm a unit have none. Places at the uncut
+  /// rest.
   /// `body`: name of the body that carries them; their own numbers are not set.
   std::vector<PlanHandle> number_handles(const Plan& plan, int step, std::string& body);
 

@@ -119,6 +119,56 @@ TEST(CutPreview, AHandleGoesWithItsCutFace) {
   EXPECT_LT(from_rims(moved, there), 25);
 }
 
+/// Distance of a point from the nearest plane of a bent sheet.
+double from_sheet(const PlacedOsteotomy& placed, const Vector3d& at, bool split) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Cut& cut : placed.cuts)
+    for (const Region::Leaf& leaf : cut.above.leaves())
+      if (split ? leaf.wall >= 1 && leaf.wall < 8 : leaf.wall >= 0)
+        least = std::min(least, std::abs(leaf.plane.distance(at)));
+  return least;
+}
+
+TEST(CutPreview, BendsAndStationsHaveHandlesOnTheCut) {
+  for (const char* osteotomy : {"genioplasty", "sagittal_split"}) {
+    CutStep cut = genioplasty();
+    cut.osteotomy = osteotomy;
+    cut.pieces = {};
+    cut.parameters = {};
+    const bool split = cut.osteotomy == "sagittal_split";
+    const auto stations = place_osteotomy(*uncut(), cut).stations;
+    EXPECT_EQ(stations.size(), split ? 6u : 4u);
+    CutPreviewer previewer(uncut());
+    std::string body;
+    const auto handles = previewer.number_handles(plan_with(cut), 1, body);
+    for (const CutStation& station : stations) {
+      const auto handle = std::find_if(handles.begin(), handles.end(), [&](const PlanHandle& each) {
+        return each.number == station.parameter;
+      });
+      ASSERT_NE(handle, handles.end()) << station.parameter;
+      EXPECT_EQ(handle->at, station.at);
+      EXPECT_EQ(handle->per_unit, station.per_unit);
+      for (const double change : {-2.0, 0.0, 2.0}) {
+        cut.parameters = {{station.parameter, change}};
+        const PlacedOsteotomy moved = place_osteotomy(*uncut(), cut);
+        const Vector3d there = station.at + change * station.per_unit;
+        EXPECT_LT(from_sheet(moved, there, split), 1e-6) << station.parameter << " " << change;
+        if (split && change != 0) {
+          EXPECT_GT(from_sheet(moved, station.at, split), 0.2) << station.parameter;
+        }
+        for (const CutStation& now : moved.stations)
+          if (now.parameter == station.parameter) {
+            EXPECT_LT((now.at - there).norm(), 1e-6);
+          }
+      }
+    }
+    cut.parameters = {{split ? "left_ramus_mm" : "left_bend_mm", 3}};
+    const CutPreview changed = previewer.preview(plan_with(cut), 1);
+    EXPECT_EQ(changed.words.problem, "") << osteotomy;
+    EXPECT_EQ(changed.pieces.size(), split ? 3u : 2u);
+  }
+}
+
 TEST(DrawnCut, PartsTheSmallerPieceWhicheverWayItIsDrawn) {
   const Operated before = apply_plan(*uncut(), empty_plan(*uncut()));
   plan_edit::DrawCut drawing = across_the_chin();
