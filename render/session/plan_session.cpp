@@ -102,6 +102,7 @@ void PlanSession::drop() {
   cutting_.drop();
   waiting_.clear();
   hands_.reset();
+  tabulated_.clear();
   stages_.reset();
   collides_.reset();
   stage_ = Stage::face;
@@ -138,6 +139,18 @@ HeldSegments PlanSession::held() const {
       held[state_.patient->scene.patient.bodies[body.body].name] =
           pose_in(body.parent, body.body, state_.newest->poses);
   return held;
+}
+
+bool PlanSession::follow_hand() {
+  if (!document_ || !state_.patient || hands_ || checking_.active()) return false;
+  HeldSegments now = held();
+  const auto same = [](const auto& a, const auto& b) {
+    return a.first == b.first && bit_identical(a.second, b.second);
+  };
+  if (std::equal(now.begin(), now.end(), tabulated_.begin(), tabulated_.end(), same)) return false;
+  tabulated_ = std::move(now);
+  show_tables(state_.scene.plan, document_->plan(), *state_.patient->operated, tabulated_);
+  return true;
 }
 
 void PlanSession::edit(const request::EditPlan& request) {
@@ -347,6 +360,8 @@ void PlanSession::save(const std::filesystem::path& file) {
 PlanView PlanSession::view() const {
   if (!document_ || !state_.patient) return {};
   PlanView view = plan_view(*document_, *state_.patient->operated, state_.patient->overlaps);
+  if (!tabulated_.empty())
+    show_tables(view, document_->plan(), *state_.patient->operated, tabulated_);
   for (PlanStepView& step : view.steps) {
     step.details = state_.in_words(std::move(step.details));
     for (std::string& finding : step.findings) finding = state_.in_words(std::move(finding));

@@ -53,6 +53,9 @@ class PlanSession {
   void make_splint(const std::string& choice);
   void hide_splint();
   bool take_splint();  // returns whether there is a new one
+  /// Shows displacements and cephalometry of segments that a hand moves; returns whether they have
+  /// changed.
+  bool follow_hand();
   /// After the patient was replaced.
   void renew_handles();
   /// Whether the plan has any step.
@@ -107,6 +110,7 @@ class PlanSession {
   Patient collides_;                    // the last patient with contact, whose models are reused
   std::deque<request::EditPlan> waiting_;
   std::optional<Hands> hands_;  // before the preview
+  HeldSegments tabulated_;      // what a hand holds in the tables shown
   Stage stage_ = Stage::face;   // of the session's patient
   Job<Checked> checking_;
   Job<Patient> colliding_, predicting_;

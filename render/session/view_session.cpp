@@ -371,7 +371,8 @@ void ViewSession::turn() {
   take_plan();
   const bool has_splint = plan_.take_splint();
   if (has_splint) state_.scene.plan = plan_.view();
-  if (plan_.take_preview() || has_splint) state_.show_plan();
+  const bool has_preview = plan_.take_preview(), moved_by_hand = plan_.follow_hand();
+  if (has_preview || has_splint || moved_by_hand) state_.show_plan();
   if (state_.patient && !loader_.job().active() && !(view.motion == asked_))
     want_motion(view.motion);
   take_motion();

@@ -153,8 +153,10 @@ void ViewStateFile::update(const Window& window, const FrameState* frame,
                      {"opening_mm", frame->measures.opening_mm},
                      {"penetration_mm", frame->contacts.max_penetration_mm()}};
   }
-  for (const DrawnItem& item : window.items())
+  for (const DrawnItem& item : window.items()) {
     json["items"][item.name] = {item.rect.x, item.rect.y, item.rect.width, item.rect.height};
+    if (!item.words.empty()) json["words"][item.name] = item.words;
+  }
   const ViewRect rect = window.view_rect();
   json["view"] = {rect.x, rect.y, rect.width, rect.height};
   std::string text = json.dump(1);

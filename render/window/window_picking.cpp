@@ -7,11 +7,17 @@
 
 namespace condyle {
 
-/// The visible surface at that position; its number is the part's.
+/// The visible surface at that position; its number is the part's. Parts that are seen through
+/// count where nothing else is.
 std::optional<PickedPoint> Window::State::surface_under(const Eigen::Vector2d& at,
                                                         bool with_face) const {
-  const bool skinned = view.shows_face(scene) && view.skin_opacity > seen_through;
-  if (skinned && !with_face) return std::nullopt;
+  if (view.shows_face(scene) && view.skin_opacity > seen_through && !with_face) return std::nullopt;
+  const auto solid = surface_of(at, false);
+  return solid ? solid : surface_of(at, true);
+}
+
+std::optional<PickedPoint> Window::State::surface_of(const Eigen::Vector2d& at, bool glass) const {
+  const bool skinned = !glass && view.shows_face(scene) && view.skin_opacity > seen_through;
   std::vector<PickableSurface> surfaces;
   std::vector<std::size_t> parts;
   TriMesh face;
@@ -19,8 +25,8 @@ std::optional<PickedPoint> Window::State::surface_under(const Eigen::Vector2d& a
   const auto& places = elsewhere.empty() ? frame()->face : elsewhere;
   for (std::size_t i = 0; i < scene.parts.size(); ++i) {
     const Part& part = scene.parts[i];
-    const bool seen =
-        i < view.parts.size() && view.parts[i].shown && view.parts[i].opacity > seen_through;
+    const bool seen = i < view.parts.size() && view.parts[i].shown && view.parts[i].opacity > 0 &&
+                      (view.parts[i].opacity <= seen_through) == glass;
     if (!seen || (part.role == Role::face && !skinned)) continue;
     if (part.role == Role::face && places.size() == part.mesh.vertices.size()) {
       for (const auto& p : places) face.vertices.push_back(p.cast<double>());
@@ -52,7 +58,8 @@ void Window::State::on_click(const ClickDetector::Click& click) {
   pacing.frames_due = 3;
   if (!found) return;
   if (!left)
-    input.menu = {{found->surface, found->triangle, found->barycentric}, click.at.x(), click.at.y()};
+    input.menu = {
+        {found->surface, found->triangle, found->barycentric}, click.at.x(), click.at.y()};
   else if (click.is_double)
     focus(found->surface);
 }

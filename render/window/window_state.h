@@ -191,6 +191,7 @@ struct Window::State {
 
   // window_picking.cpp
   std::optional<PickedPoint> surface_under(const Eigen::Vector2d& at, bool with_face) const;
+  std::optional<PickedPoint> surface_of(const Eigen::Vector2d& at, bool glass) const;
   void on_click(const ClickDetector::Click& click);
   void focus(std::size_t part);
 

@@ -250,16 +250,25 @@ Vector3d rotation_point(const Operated& operated, const std::string& segment,
 }
 
 Landmarks planned_landmarks(const Operated& operated) {
+  return landmarks_at(operated, operated.poses);
+}
+
+Landmarks landmarks_at(const Operated& operated, const BodyPoses& poses) {
   Landmarks planned = moved_landmarks(operated.patient.landmarks, operated.owners,
-                                      completed(operated.patient.bodies, operated.poses));
+                                      completed(operated.patient.bodies, poses));
   for (const std::string& name : operated.resected_landmarks) planned.points.erase(name);
   return planned;
 }
 
 MovementTable planned_movements(const Operated& operated, const ClinicalFrame& frame) {
+  return movements_at(operated, frame, operated.poses);
+}
+
+MovementTable movements_at(const Operated& operated, const ClinicalFrame& frame,
+                           const BodyPoses& poses) {
   Landmarks present = operated.patient.landmarks;
   for (const std::string& name : operated.resected_landmarks) present.points.erase(name);
-  return movement_table(present, frame, operated.patient.bodies, operated.owners, operated.poses);
+  return movement_table(present, frame, operated.patient.bodies, operated.owners, poses);
 }
 
 Case operated_case(const Operated& operated) {

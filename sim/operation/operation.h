@@ -153,11 +153,15 @@ Pose planned_pose(const Operated& operated, const Plan& plan, const MoveStep& st
 Eigen::Vector3d rotation_point(const Operated& operated, const std::string& segment,
                                const ClinicalMove& move);
 
-/// The landmarks at their planned positions, without those of resected bone and teeth.
+/// The landmarks at the planned positions, or at others from the uncut rest, without those of
+/// resected bone and teeth.
 Landmarks planned_landmarks(const Operated& operated);
+Landmarks landmarks_at(const Operated& operated, const BodyPoses& poses);
 
-/// Displacements by the plan, without landmarks of resected bone and teeth.
+/// Displacements by the plan, or at other positions, without landmarks of resected bone and teeth.
 MovementTable planned_movements(const Operated& operated, const ClinicalFrame& frame);
+MovementTable movements_at(const Operated& operated, const ClinicalFrame& frame,
+                           const BodyPoses& poses);
 
 /// The patient after the operation: surfaces, landmarks, canals and muscles at their planned
 /// positions, which are its new rest. The face is as before. Landmarks of resected bone are absent,

@@ -147,6 +147,16 @@ EditedPlan shifted(const Plan& plan, const plan_edit::Shift& edit) {
           "reorder " + step_name(step)};
 }
 
+/// By how much the hands displace a body from its planned position; none where they do not.
+std::optional<Pose> hand_displacement(const BodyTree& bodies, BodyId body,
+                                      const HeldSegments& held) {
+  std::optional<Pose> X;
+  for (BodyId each = body; each != cranium_body; each = bodies[each].parent)
+    if (const auto hand = held.find(bodies[each].name); hand != held.end())
+      X = X ? hand->second * *X : hand->second;
+  return X;
+}
+
 EditedPlan take_positions(Plan plan, const Operated& operated, const HeldSegments& held) {
   const BodyTree& bodies = operated.patient.bodies;
   const ClinicalFrame frame = clinical_frame(operated.patient.landmarks, plan.reference);
@@ -154,16 +164,9 @@ EditedPlan take_positions(Plan plan, const Operated& operated, const HeldSegment
   // From the root outward, so that a segment that is itself held goes along with its parent first.
   for (int b = 1; b < bodies.size(); ++b) {
     const std::string& name = bodies[BodyId{b}].name;
-    Pose X;
-    bool along = false;
-    for (int a = b; a > 0; a = static_cast<int>(index_of(bodies[BodyId{a}].parent))) {
-      const auto hand = held.find(bodies[BodyId{a}].name);
-      if (hand == held.end()) continue;
-      X = hand->second * X;
-      along = true;
-    }
-    if (!along || (!held.contains(name) && !move_of(plan, name))) continue;
-    MoveStep step{name, ExplicitMove{X * operated.poses[BodyId{b}]}};
+    const auto X = hand_displacement(bodies, BodyId{b}, held);
+    if (!X || (!held.contains(name) && !move_of(plan, name))) continue;
+    MoveStep step{name, ExplicitMove{*X * operated.poses[BodyId{b}]}};
     step.move = in_clinical_words(operated, plan, step);
     plan = with_move(std::move(plan), step);
     if (held.contains(name)) moved.push_back(name);
@@ -314,35 +317,6 @@ std::string millimetres(double value, const char* positive, const char* negative
   return std::abs(value) < 0.05 ? std::string() : in_words(value, positive, negative);
 }
 
-void add_tables(PlanView& view, const Plan& plan, const Operated& operated) {
-  const Landmarks& before = operated.patient.landmarks;
-  ClinicalFrame frame;
-  try {
-    frame = clinical_frame(before, plan.reference);
-  } catch (const InputError& error) {
-    view.findings.push_back(fmt::format("no tables: {}", error.what()));
-    return;
-  }
-  for (const MovementRow& row : planned_movements(operated, frame).rows) {
-    if (row.distance_mm() < 0.05) continue;
-    std::string words;
-    for (const std::string& each :
-         {millimetres(-row.back_mm, "forward", "back"), millimetres(row.up_mm, "up", "down"),
-          millimetres(row.left_mm, "left", "right")})
-      if (!each.empty()) words += (words.empty() ? "" : ", ") + each;
-    view.displacements.push_back({row.label, "", words, ""});
-  }
-  for (const CephalometricMeasure& measure :
-       cephalometry(frame, before, planned_landmarks(operated))) {
-    if (!measure.before || !measure.after) continue;
-    const auto number = [&](double value) {
-      return fmt::format("{:.1f}{}", value, measure.unit == "deg" ? "\u00b0" : "");
-    };
-    view.cephalometry.push_back(
-        {measure.name, number(*measure.before), number(*measure.after), norm_text(measure.norm)});
-  }
-}
-
 /// What can be resected, and replaced by a graft.
 void add_graft_choices(PlanView& view, const Plan& plan, const Operated& operated) {
   for (const std::string& segment : operated_segments(operated))
@@ -423,6 +397,42 @@ std::vector<std::optional<Pose>> changed_positions(const Operated& operated, con
   return changed;
 }
 
+void show_tables(PlanView& view, const Plan& plan, const Operated& operated,
+                 const HeldSegments& held) {
+  const Landmarks& before = operated.patient.landmarks;
+  const BodyTree& bodies = operated.patient.bodies;
+  view.displacements.clear();
+  view.cephalometry.clear();
+  ClinicalFrame frame;
+  try {
+    frame = clinical_frame(before, plan.reference);
+  } catch (const InputError&) {
+    return;
+  }
+  BodyPoses at = completed(bodies, operated.poses);
+  for (int b = 1; b < bodies.size() && !held.empty(); ++b)
+    if (const auto X = hand_displacement(bodies, BodyId{b}, held))
+      at[BodyId{b}] = *X * at[BodyId{b}];
+  for (const MovementRow& row : movements_at(operated, frame, at).rows) {
+    if (row.distance_mm() < 0.05) continue;
+    std::string words;
+    for (const std::string& each :
+         {millimetres(-row.back_mm, "forward", "back"), millimetres(row.up_mm, "up", "down"),
+          millimetres(row.left_mm, "left", "right")})
+      if (!each.empty()) words += (words.empty() ? "" : ", ") + each;
+    view.displacements.push_back({row.label, "", words, ""});
+  }
+  for (const CephalometricMeasure& measure :
+       cephalometry(frame, before, landmarks_at(operated, at))) {
+    if (!measure.before || !measure.after) continue;
+    const auto number = [&](double value) {
+      return fmt::format("{:.1f}{}", value, measure.unit == "deg" ? "\u00b0" : "");
+    };
+    view.cephalometry.push_back(
+        {measure.name, number(*measure.before), number(*measure.after), norm_text(measure.norm)});
+  }
+}
+
 PlanView plan_view(const PlanDocument& document, const Operated& operated,
                    const std::vector<SegmentOverlap>& overlaps) {
   const Plan& plan = document.plan();
@@ -450,7 +460,13 @@ PlanView plan_view(const PlanDocument& document, const Operated& operated,
   add_graft_choices(view, plan, operated);
   view.splints = splint_choices(operated);
   view.findings.insert(view.findings.end(), operated.problems.begin(), operated.problems.end());
-  add_tables(view, plan, operated);
+  try {
+    clinical_frame(operated.patient.landmarks, plan.reference);
+  } catch (const InputError& error) {
+    view.findings.push_back(fmt::format("no tables: {}", error.what()));
+    return view;
+  }
+  show_tables(view, plan, operated);
   return view;
 }
 

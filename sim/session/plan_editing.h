@@ -37,6 +37,11 @@ EditedPlan edited_plan(const Case& uncut, const Plan& plan, const Operated& oper
 std::vector<std::optional<Pose>> changed_positions(const Operated& operated, const Plan& before,
                                                    const Plan& after);
 
+/// Sets the displacements and the cephalometry of a view to those with segments where hands hold
+/// them.
+void show_tables(PlanView& view, const Plan& plan, const Operated& operated,
+                 const HeldSegments& held = {});
+
 /// What a front end shows of a plan: steps with their findings, overlaps, displacements and
 /// cephalometry. `operated`: the plan on its case; `overlaps`: of it.
 PlanView plan_view(const PlanDocument& document, const Operated& operated,
