@@ -285,6 +285,7 @@ std::optional<PlanSession::Planned> PlanSession::take() {
       accept(std::move(checked->change));
       for (const std::string& note : document_->notes()) state_.front_end.say(note);
       hands_.reset();
+      tabulated_.clear();
       collide(checked->patient);
       planned = Planned{std::move(checked->patient), Stage::pieces};
     });

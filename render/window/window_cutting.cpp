@@ -63,11 +63,12 @@ std::optional<Vector3d> Window::State::cut_point(const Vector2d& at, std::size_t
 void Window::State::add_cut_point(const Vector2d& at) {
   if (!frame()) return;
   DrawnCut drawn = view.drawn_cut;
-  const auto found = surface_under(at, true);
+  // Beside a selected bone, parts that are seen through do not count.
+  const bool selected = view.selected && can_be_cut(scene.parts[*view.selected]);
+  const auto found = drawn.part || selected ? surface_of(at, false) : surface_under(at, true);
   if (found && scene.parts[found->surface].role == Role::face)
     return panels->say("The skin is in front of the bone; key K hides it");
-  if (!drawn.part && !found && view.selected && can_be_cut(scene.parts[*view.selected]))
-    drawn.part = view.selected;
+  if (!drawn.part && !found && selected) drawn.part = view.selected;
   if (!drawn.part) {
     if (!found || !can_be_cut(scene.parts[found->surface]))
       return panels->say(found ? "Cuts are drawn on bone" : "Click the bone to be cut first");

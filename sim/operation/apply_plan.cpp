@@ -131,25 +131,10 @@ TriMesh moved_mesh(TriMesh mesh, const Pose& X) {
   return mesh;
 }
 
-/// Removes findings of teeth and foramina that leave the patient.
-void drop_resected(const Operated& operated, std::vector<DangerFinding>& findings) {
-  std::set<std::string> zones;
-  for (const Resection& resection : operated.resections)
-    for (const int fdi : resection.teeth) zones.insert(fmt::format("tooth {}", fdi));
-  for (std::string name : operated.resected_landmarks) {
-    std::replace(name.begin(), name.end(), '_', ' ');
-    zones.insert(std::move(name));
-  }
-  std::erase_if(findings, [&](const DangerFinding& finding) {
-    return (finding.kind == ZoneKind::tooth || finding.kind == ZoneKind::foramen) &&
-           zones.contains(finding.zone);
-  });
-}
-
 /// Landmarks of a jaw that moves, whether or not its bone is there.
 bool measures_motion(const std::string& landmark) {
-  return landmark == "lower_incisal_point" || landmark == "left_condyle" ||
-         landmark == "right_condyle";
+  return landmark == "lower_incisal_point" || landmark == "upper_incisal_point" ||
+         landmark == "left_condyle" || landmark == "right_condyle";
 }
 
 }  // namespace
@@ -173,6 +158,21 @@ double CutReport::volume_error_percent() const {
   return volume_mm3 > 0 ? 100 * std::abs(sum - volume_mm3) / volume_mm3 : 0;
 }
 
+void drop_resected_zones(const Operated& operated, std::vector<DangerFinding>& findings) {
+  std::set<std::string> zones;
+  for (const Resection& resection : operated.resections)
+    for (const int fdi : resection.teeth) zones.insert(fmt::format("tooth {}", fdi));
+  for (std::string name : operated.resected_landmarks) {
+    std::replace(name.begin(), name.end(), '_', ' ');
+    zones.insert(std::move(name));
+  }
+  for (const DangerZone& own : operated.own_zones) zones.erase(own.name);
+  std::erase_if(findings, [&](const DangerFinding& finding) {
+    return (finding.kind == ZoneKind::tooth || finding.kind == ZoneKind::foramen) &&
+           zones.contains(finding.zone);
+  });
+}
+
 Operated apply_plan(const Case& patient, const Plan& plan) {
   return with_moves(apply_cuts(patient, plan), plan);
 }
@@ -191,7 +191,7 @@ Operated apply_cuts(const Case& patient, const Plan& plan) {
   const OwnerFinder finder(patient, operated.patient);
   operated.owners = landmark_owners(patient, finder);
   operated.resected_landmarks = resected_landmarks(patient, finder, operated);
-  for (CutReport& cut : operated.cuts) drop_resected(operated, cut.dangers);
+  for (CutReport& cut : operated.cuts) drop_resected_zones(operated, cut.dangers);
   operated.muscles = muscle_owners(patient, finder);
   operated.patient.jaw = jaw_bodies(patient, operated.patient, finder);
   for (const PlanStep& step : plan.steps)  // what was there owns landmarks and muscles
@@ -205,7 +205,7 @@ Operated with_moves(Operated cuts, const Plan& plan) {
   check_plan(plan);
   pose_bodies(plan, cuts);
   trim_segments(cuts, plan);
-  for (TrimReport& trim : cuts.trims) drop_resected(cuts, trim.dangers);
+  for (TrimReport& trim : cuts.trims) drop_resected_zones(cuts, trim.dangers);
   return cuts;
 }
 
@@ -254,27 +254,39 @@ Landmarks planned_landmarks(const Operated& operated) {
 }
 
 Landmarks landmarks_at(const Operated& operated, const BodyPoses& poses) {
-  Landmarks planned = moved_landmarks(operated.patient.landmarks, operated.owners,
-                                      completed(operated.patient.bodies, poses));
-  for (const std::string& name : operated.resected_landmarks) planned.points.erase(name);
-  return planned;
+  return moved_landmarks(present_landmarks(operated), operated.owners,
+                         completed(operated.patient.bodies, poses));
 }
 
 MovementTable planned_movements(const Operated& operated, const ClinicalFrame& frame) {
   return movements_at(operated, frame, operated.poses);
 }
 
-MovementTable movements_at(const Operated& operated, const ClinicalFrame& frame,
-                           const BodyPoses& poses) {
+Landmarks present_landmarks(const Operated& operated) {
   Landmarks present = operated.patient.landmarks;
   for (const std::string& name : operated.resected_landmarks) present.points.erase(name);
-  return movement_table(present, frame, operated.patient.bodies, operated.owners, poses);
+  return present;
+}
+
+MovementTable movements_at(const Operated& operated, const ClinicalFrame& frame,
+                           const BodyPoses& poses) {
+  return movement_table(present_landmarks(operated), frame, operated.patient.bodies,
+                        operated.owners, poses);
 }
 
 Case operated_case(const Operated& operated) {
   Case patient = operated.patient;
   for (const std::string& name : operated.resected_landmarks)
     if (!measures_motion(name)) patient.landmarks.points.erase(name);
+  std::erase_if(patient.tissue.attachments, [&](const AttachmentRegion& region) {
+    const bool gone = !region.landmark.empty() && !patient.landmarks.find(region.landmark) &&
+                      operated.resected_landmarks.contains(region.landmark);
+    if (gone)
+      patient.notes.push_back(
+          fmt::format("the attachment of soft tissue around {} is left out: its bone is resected",
+                      region.landmark));
+    return gone;
+  });
   const BodyPoses& at = operated.poses;
   const auto is_moved = [&](BodyId body) { return !bit_identical(at[body], {}); };
   bool moved = false;

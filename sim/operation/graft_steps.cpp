@@ -176,14 +176,13 @@ std::string tilt_words(const DonorCut& cut) {
 
 std::string face_words(const GraftFaceReport& face) {
   using Level = GraftFaceReport::Level;
+  const std::string where =
+      fmt::format("{}, {} face, to {}", face.piece, face.face == 0 ? "first" : "last", face.other);
   if (face.level == Level::open)
-    return fmt::format("{} to {}: no bone within {:g} mm of the face: not united", face.piece,
-                       face.other, face_reach_mm);
+    return fmt::format("{}: no bone within {:g} mm: not united", where, face_reach_mm);
   std::string words = fmt::format(
-      "{} to {}: contact over {:.0f} % of the smaller face, gap {:.2f} mm on average, {:.2f} mm at "
-      "most",
-      face.piece, face.other, 100 * face.share, face.contact.mean_gap_mm,
-      face.contact.largest_gap_mm);
+      "{}: contact over {:.0f} % of the smaller face, gap {:.2f} mm on average, {:.2f} mm at most",
+      where, 100 * face.share, face.contact.mean_gap_mm, face.contact.largest_gap_mm);
   if (face.level == Level::very_wide)
     words += fmt::format("; above {:g} mm bone is not expected to unite", very_wide_gap_mm);
   if (face.level == Level::wide)
@@ -262,7 +261,7 @@ std::vector<GraftFaceReport> graft_faces(const Operated& operated, const GraftLa
                             double other_area, const std::vector<PosedTree>& others) {
     const Pose X = pose(piece);
     const Vector3d normal = X.R * piece.faces[face].normal;
-    GraftFaceReport report{.piece = piece.body, .other = other};
+    GraftFaceReport report{.piece = piece.body, .other = other, .face = face};
     report.contact =
         face_contact(piece.mesh, piece.wall, face, piece.faces[face],
                      [&](const Vector3d& p) { return gap_along(others, X * p, normal); });
@@ -325,7 +324,7 @@ std::string resection_sentence(const Resection& resection) {
   return fmt::format("resected: {}, {:.1f} cm³{}", resection.segment, resection.volume_mm3 / 1000,
                      resection.teeth.empty()
                          ? ""
-                         : fmt::format(", with the teeth {}", fmt::join(resection.teeth, ", ")));
+                         : fmt::format(", with teeth {}", fmt::join(resection.teeth, ", ")));
 }
 
 std::vector<std::string> graft_sentences(const Operated& operated, const GraftLayout& graft) {

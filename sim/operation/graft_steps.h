@@ -20,6 +20,7 @@ void place_graft(Operated& operated, const Plan& plan, const PlanStep& step);
 struct GraftFaceReport {
   enum class Level { good, wide, very_wide, open };
   std::string piece = {}, other = {};  // names of bodies; other: of the bone, or of the next piece
+  int face = 0;                        // of the piece: 0 its first, 1 its last
   FaceContact contact = {};
   double share = 0;  // of the smaller face that is in contact
   Level level = Level::good;
@@ -32,7 +33,7 @@ std::vector<GraftFaceReport> graft_faces(const Operated& operated, const GraftLa
 /// mandible overlap by 0.4 mm".
 std::vector<std::string> graft_overlaps(const Operated& operated, const GraftLayout& graft);
 
-/// "resected: tumour, 19.3 cm³, with the teeth 31, 32".
+/// "resected: tumour, 19.3 cm³, with teeth 31, 32".
 std::string resection_sentence(const Resection& resection);
 
 /// A graft in sentences: pieces with lengths and saw cuts, faces, warnings.

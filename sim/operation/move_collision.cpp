@@ -32,7 +32,7 @@ std::optional<MoveCollision> move_collision(const Operated& operated, const Plan
   });
   found.free = scaled(*whole, found.free_fraction);
   found.words = fmt::format(
-      "{}; {:.0f} % of the move is free: {}", overlap_text(*hit, operated.patient.landmarks),
+      "{}; {:.0f} % of the move is free: {}", overlap_text(*hit, present_landmarks(operated)),
       100 * found.free_fraction, found.free_fraction > 0 ? move_words(found.free) : "nothing");
   return found;
 }

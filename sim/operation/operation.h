@@ -158,6 +158,13 @@ Eigen::Vector3d rotation_point(const Operated& operated, const std::string& segm
 Landmarks planned_landmarks(const Operated& operated);
 Landmarks landmarks_at(const Operated& operated, const BodyPoses& poses);
 
+/// The landmarks at the uncut rest, without those of resected bone and teeth.
+Landmarks present_landmarks(const Operated& operated);
+
+/// Removes findings of the patient's teeth and foramina that were resected; the plan's own zones
+/// remain.
+void drop_resected_zones(const Operated& operated, std::vector<DangerFinding>& findings);
+
 /// Displacements by the plan, or at other positions, without landmarks of resected bone and teeth.
 MovementTable planned_movements(const Operated& operated, const ClinicalFrame& frame);
 MovementTable movements_at(const Operated& operated, const ClinicalFrame& frame,

@@ -96,9 +96,7 @@ class OperationPageWriter {
     pictures(page_.bones, "wide");
     movements();
     table("Cephalometry", cephalometry_table(measures_, page_.prediction != nullptr),
-          "* outside its norm; - not measured, because a landmark is resected. Norms: published "
-          "means of European adults with one standard "
-          "deviation; they are for comparison, not a target.");
+          cephalometry_legend(operated_) + " They are for comparison, not a target.");
     contacts();
     dangers();
     prediction();

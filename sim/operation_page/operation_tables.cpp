@@ -100,6 +100,13 @@ PageTable movements_table(const MovementTable& movements) {
   return table;
 }
 
+std::string cephalometry_legend(const Operated& operated) {
+  std::string text = "* outside its norm.";
+  if (!operated.resected_landmarks.empty())
+    text += " - not measured, because a landmark is resected.";
+  return text + " Norms: published means of European adults with one standard deviation.";
+}
+
 PageTable cephalometry_table(const std::vector<CephalometricMeasure>& measures, bool has_soft) {
   PageTable table{{"Measure", "Before", "After", "Change", "Norm"}, {}};
   for (const CephalometricMeasure& measure : measures) {

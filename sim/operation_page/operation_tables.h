@@ -29,6 +29,8 @@ PageTable rotations_table(const MovementTable& movements);
 PageTable midlines_table(const MovementTable& movements);
 /// `has_soft`: the measures of the profile are those of a predicted face; else they are left out.
 /// Values after the operation that lie outside their norm are marked with a star.
+/// What the marks of cephalometry_table() mean, and where its norms come from.
+std::string cephalometry_legend(const Operated& operated);
 PageTable cephalometry_table(const std::vector<CephalometricMeasure>& measures, bool has_soft);
 PageTable overlaps_table(const std::vector<SegmentOverlap>& overlaps);
 /// Danger zones near the cuts and trims, nearest first in each.

@@ -98,14 +98,16 @@ PlacedOsteotomy place_genioplasty(Site& site) {
         height - menton.z()));
   // From bend to bend flat, then falling to the border and as much beyond it.
   const Vector3d along(0, 1, -fall);
-  const double out = std::max(border.x(), foramen.x() + 5), far = out + 15;
+  const double at_border = std::max(border.x(), foramen.x() + 5);
+  const double far = at_border + 15 + std::max({0.0, site["left_bend_mm"], site["right_bend_mm"]});
   std::vector<Vector3d> line(4);  // from the right to the left
   std::vector<CutStation> stations;
   for (const Side side : both_sides) {
     const std::string bend_name = name_of(side) + "_bend_mm", end_name = name_of(side) + "_end_mm";
-    const double bend = std::clamp(foramen.x() + site[bend_name], 2.0, out - 3),
-                 leaves = border.z() + site[end_name] + fall * (border.y() - front),
-                 slope = std::max(0.2, (height - leaves) / (out - bend));
+    const double bend = foramen.x() + site[bend_name], out = std::max(at_border, bend + 5),
+                 leaves = border.z() + fall * (border.y() - front),
+                 slope = std::max(0.2, (height - leaves) / (out - bend)) -
+                         site[end_name] / (out - bend);
     const Vector3d turn(sign_of(side) * bend, front, height);
     line[side == Side::left ? 2 : 1] = turn;
     line[side == Side::left ? 3 : 0] =
@@ -128,20 +130,20 @@ PlacedOsteotomy place_genioplasty(Site& site) {
 }  // namespace
 
 Recipe genioplasty_recipe() {
-  return {
-      "genioplasty",
-      Jaw::lower,
-      {{"height_mm", "mm", "height of the flat part above menton", 14.5, 6, 25},
-       {"tilt_deg", "deg", "fall of the cut towards the back", 8.5, -10, 25},
-       {"left_bend_mm", "mm", "bend on the left, outside the mental foramen", 0, -12, 12},
-       {"right_bend_mm", "mm", "bend on the right, outside the mental foramen", 0, -12, 12},
-       {"left_end_mm", "mm", "end on the left, above the border below the first molar", 0, -12, 12},
-       {"right_end_mm", "mm", "end on the right, above the border below the first molar", 0, -12,
-        12},
-       {"root_margin_mm", "mm", "least distance from roots", 5, 3, 12},
-       {"foramen_margin_mm", "mm", "least distance from the mental foramina", 5, 3, 12},
-       {"canal_margin_mm", "mm", "least distance from the wall of the canal", 2, 1, 6}},
-      place_genioplasty};
+  return {"genioplasty",
+          Jaw::lower,
+          {{"height_mm", "mm", "height of the flat part above menton", 14.5, 6, 25},
+           {"tilt_deg", "deg", "fall of the cut towards the back", 8.5, -10, 25},
+           {"left_bend_mm", "mm", "left bend, lateral to the mental foramen", 0, -12, 12},
+           {"right_bend_mm", "mm", "right bend, lateral to the mental foramen", 0, -12, 12},
+           {"left_end_mm", "mm", "left end, height above the lower border below the first molar", 0,
+            -12, 12},
+           {"right_end_mm", "mm", "right end, height above the lower border below the first molar",
+            0, -12, 12},
+           {"root_margin_mm", "mm", "least distance from roots", 5, 3, 12},
+           {"foramen_margin_mm", "mm", "least distance from the mental foramina", 5, 3, 12},
+           {"canal_margin_mm", "mm", "least distance from the wall of the canal", 2, 1, 6}},
+          place_genioplasty};
 }
 
 }  // namespace condyle

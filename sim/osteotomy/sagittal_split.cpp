@@ -14,12 +14,15 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double clear_of_bone_mm = 60;
+/// Parameters of a side that shift its stations, from back to front.
+constexpr const char* shifts[] = {"_ramus_mm", "_front_mm", "_body_mm"};
 
 /// Where the split passes the bone of one side, from back to front.
 struct Stations {
   Vector3d hind, lingula, front, buccal;
-  Vector3d rising;   // the ramus' own direction, along which the sheet is extruded
-  Vector3d on_body;  // the buccal station at the height of the body
+  Vector3d rising;      // the ramus' own direction, along which the sheet is extruded
+  Vector3d on_body;     // the buccal station at the height of the body
+  double plate_mm = 0;  // least thickness of bone outside the sheet; negative: it leaves the bone
 };
 
 /// Inclination of the outer surface between two heights, averaged over three places.
@@ -102,12 +105,15 @@ Stations find_stations(const Site& site, Side side, const Ramus& ramus, double b
   const double body_z = 0.5 * (high + low + 12) - 4;
   stations.buccal = station(buccal_y, body_z, true);
   thicken_plate(site, side, stations, high, low + 14);
-  const std::pair<Vector3d*, const char*> shifted[] = {{&stations.hind, "_ramus_mm"},
-                                                       {&stations.lingula, "_ramus_mm"},
-                                                       {&stations.front, "_front_mm"},
-                                                       {&stations.buccal, "_body_mm"}};
-  for (const auto& [place, name] : shifted)
-    place->x() += sign_of(side) * site[name_of(side) + name];
+  const std::pair<Vector3d*, const char*> moved[] = {{&stations.hind, shifts[0]},
+                                                     {&stations.lingula, shifts[0]},
+                                                     {&stations.front, shifts[1]},
+                                                     {&stations.buccal, shifts[2]}};
+  for (const auto& [place, name] : moved) place->x() += sign_of(side) * site[name_of(side) + name];
+  stations.plate_mm = std::min(
+      thinnest_plate(jaw, side, stations.lingula, stations.front, stations.rising, high, low + 14),
+      thinnest_plate(jaw, side, stations.front, stations.buccal, stations.rising, body_z + 4,
+                     low + 8));
   stations.on_body = stations.buccal + stations.rising * ((body_z - top) / stations.rising.z());
   return stations;
 }
@@ -138,14 +144,19 @@ Cut split_cut(Site& site, Side side, std::vector<CutStation>& stations) {
   // Behind the lingula Hunsuck's split turns inward and leaves through the medial cortex.
   const bool full = site["full"] != 0;
   const Vector3d turn = at.lingula + site["behind_lingula_mm"] * backward;
+  const bool shifted = std::any_of(std::begin(shifts), std::end(shifts), [&](const char* name) {
+    return site[name_of(side) + name] != 0;
+  });
+  if (shifted && at.plate_mm < 0)
+    jaw.notes.push_back(
+        fmt::format("the split on the {} lies up to {:.1f} mm outside the bone between its "
+                    "stations: less lateral shift keeps it within",
+                    name_of(side), -at.plate_mm));
   // On the ramus below the medial cut, above which there is no split.
   const Vector3d below = -5 * at.rising;
-  const std::pair<Vector3d, const char*> places[] = {
-      {(full ? at.lingula : turn) + below, "_ramus_mm"},
-      {at.front + below, "_front_mm"},
-      {at.on_body, "_body_mm"}};
-  for (const auto& [place, name] : places)
-    stations.push_back(jaw.station(name_of(side) + name, place, sign * Vector3d::UnitX()));
+  const Vector3d places[] = {(full ? at.lingula : turn) + below, at.front + below, at.on_body};
+  for (int i = 0; i < 3; ++i)
+    stations.push_back(jaw.station(name_of(side) + shifts[i], places[i], sign * Vector3d::UnitX()));
   std::vector<Vector3d> line;
   Vector3d outside(sign, 0, 0);
   if (full) {
@@ -189,14 +200,14 @@ Recipe sagittal_split_recipe() {
        {"full", "", "1: the split runs through the posterior border; 0: it ends as Hunsuck's", 0, 0,
         1},
        {"buccal_back_mm", "mm", "buccal cut behind the middle of the second molar", 0, -12, 12},
-       {"left_ramus_mm", "mm", "split farther out behind the lingula, on the left", 0, -5, 5},
-       {"left_front_mm", "mm", "split farther out at the front of the ramus, on the left", 0, -5,
-        5},
-       {"left_body_mm", "mm", "split farther out in the body, on the left", 0, -5, 5},
-       {"right_ramus_mm", "mm", "split farther out behind the lingula, on the right", 0, -5, 5},
-       {"right_front_mm", "mm", "split farther out at the front of the ramus, on the right", 0, -5,
-        5},
-       {"right_body_mm", "mm", "split farther out in the body, on the right", 0, -5, 5},
+       {"left_ramus_mm", "mm", "lateral shift of the split behind the lingula, left", 0, -4, 4},
+       {"left_front_mm", "mm", "lateral shift of the split at the front of the ramus, left", 0, -4,
+        4},
+       {"left_body_mm", "mm", "lateral shift of the split in the body, left", 0, -4, 4},
+       {"right_ramus_mm", "mm", "lateral shift of the split behind the lingula, right", 0, -4, 4},
+       {"right_front_mm", "mm", "lateral shift of the split at the front of the ramus, right", 0,
+        -4, 4},
+       {"right_body_mm", "mm", "lateral shift of the split in the body, right", 0, -4, 4},
        {"plate_mm", "mm", "thickness of bone outside the split that is kept where it can be", 0.5,
         0, 4},
        {"canal_margin_mm", "mm", "distance from the wall of the canal that is kept where it can be",

@@ -143,7 +143,8 @@ CutPreview CutPreviewer::preview(const Plan& plan, int id) {
     Operated bones = before(plan, id);
     const std::size_t problems = bones.problems.size();
     cut_case(bones, place_osteotomy(bones.patient, cut), step, CutScope::bone);
-    const CutReport& report = bones.cuts.back();
+    CutReport& report = bones.cuts.back();
+    drop_resected_zones(bones, report.dangers);
     preview.words.findings = cut_sentences(report, bones.patient.landmarks);
     preview.words.warns = report.needs_attention();
     if (bones.problems.size() > problems)

@@ -424,12 +424,13 @@ void show_tables(PlanView& view, const Plan& plan, const Operated& operated,
   }
   for (const CephalometricMeasure& measure :
        cephalometry(frame, before, landmarks_at(operated, at))) {
-    if (!measure.before || !measure.after) continue;
-    const auto number = [&](double value) {
-      return fmt::format("{:.1f}{}", value, measure.unit == "deg" ? "\u00b0" : "");
+    if (!measure.before) continue;
+    const auto number = [&](const std::optional<double>& value) {
+      return value ? fmt::format("{:.1f}{}", *value, measure.unit == "deg" ? "\u00b0" : "")
+                   : std::string("-");
     };
     view.cephalometry.push_back(
-        {measure.name, number(*measure.before), number(*measure.after), norm_text(measure.norm)});
+        {measure.name, number(measure.before), number(measure.after), norm_text(measure.norm)});
   }
 }
 
@@ -450,7 +451,7 @@ PlanView plan_view(const PlanDocument& document, const Operated& operated,
   view.undo = document.history().undoable().value_or("");
   view.redo = document.history().redoable().value_or("");
   for (const SegmentOverlap& overlap : overlaps) {
-    view.findings.push_back(overlap_text(overlap, operated.patient.landmarks));
+    view.findings.push_back(overlap_text(overlap, present_landmarks(operated)));
     if (overlap.kind != SegmentOverlap::Kind::trimmed) continue;
     for (const std::string& body : {overlap.body_a, overlap.body_b})
       if (std::none_of(view.trimmed.begin(), view.trimmed.end(),

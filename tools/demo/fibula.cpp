@@ -93,8 +93,7 @@ int run_fibula(const DemoOptions& options, const CommonOptions& common) {
     const PlayedMotion played = play_motion(scene, path, settings, play, true, bar.callback());
     output.add_picture("insertion_path.png",
                        path_picture(played, "The graft leaves its seat along the insertion path"),
-                       "The graft leaves its seat along its path; inserted, it comes back the same "
-                       "way.");
+                       "The graft leaves its seat; insertion follows the same path in reverse.");
     const Motion opening = make_motion("open; close", scene.patient, scene.contacts);
     const PlayedMotion opened = play_motion(scene, opening, settings, play, true, bar.callback());
     const std::size_t widest = opened.widest();
@@ -106,8 +105,8 @@ int run_fibula(const DemoOptions& options, const CommonOptions& common) {
     output.add_picture("opening.png", draw_grid(grid), "The mouth opens after the operation.");
     output.add_section(
         "Mouth opening",
-        fmt::format("After the operation the mouth opens by {:.1f} mm, measured where "
-                    "the lower incisal point was.",
+        fmt::format("After the operation the mouth opens by {:.1f} mm, measured at the former "
+                    "lower incisal point.",
                     opened.frames[widest].measures.opening_mm));
     output.json["opening"] = {{"widest_mm", opened.frames[widest].measures.opening_mm}};
   });

@@ -74,7 +74,7 @@ void OperationOutput::add_operation(const Plan& plan, const Operated& operated,
     add_list(trim.title + ", " + trim.part, trim_sentences(trim));
   if (!operated.resections.empty()) body_ += "<h2>Resections and grafts</h2>\n";
   for (const Resection& resection : operated.resections)
-    body_ += "<p>" + escaped(resection_sentence(resection)) + "</p>\n";
+    body_ += "<p>" + escaped(display_name(resection_sentence(resection))) + "</p>\n";
   for (const GraftLayout& graft : operated.grafts)
     add_list("graft " + graft.step.name, graft_sentences(operated, graft));
   add_table("Overlap at the planned positions", overlaps_table(segment_overlaps(operated)));
@@ -84,10 +84,8 @@ void OperationOutput::add_operation(const Plan& plan, const Operated& operated,
     const Landmarks& before = operated.patient.landmarks;
     add_table("Movements of the bone", movements_table(planned_movements(operated, frame)));
     const Landmarks planned = soft ? *soft : planned_landmarks(operated);
-    add_table(
-        "Cephalometry", cephalometry_table(cephalometry(frame, before, planned), !!soft),
-        "* outside its norm; - not measured, because a landmark is resected. Norms: published "
-        "means of European adults with one standard deviation.");
+    add_table("Cephalometry", cephalometry_table(cephalometry(frame, before, planned), !!soft),
+              cephalometry_legend(operated));
   } catch (const InputError& error) {
     add_note(fmt::format("tables of movements and cephalometry are left out: {}", error.what()));
   }

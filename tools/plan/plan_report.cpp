@@ -123,7 +123,7 @@ Json overlap_json(const SegmentOverlap& overlap) {
 std::string overlaps_text(const Operated& operated) {
   std::string text;
   for (const SegmentOverlap& overlap : segment_overlaps(operated))
-    text += overlap_text(overlap, operated.patient.landmarks) + "\n";
+    text += overlap_text(overlap, present_landmarks(operated)) + "\n";
   return text.empty() ? text : "\nOverlap at the planned positions\n" + text;
 }
 

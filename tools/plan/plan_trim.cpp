@@ -67,7 +67,7 @@ std::vector<std::string> left_overlaps(const Operated& operated, const std::stri
   std::vector<std::string> texts;
   for (const SegmentOverlap& overlap : body_overlaps(operated, segment))
     if (overlap.kind == SegmentOverlap::Kind::trimmed)
-      texts.push_back(overlap_text(overlap, operated.patient.landmarks));
+      texts.push_back(overlap_text(overlap, present_landmarks(operated)));
   if (texts.empty()) texts.push_back("no overlapping bone of " + segment + " is left");
   return texts;
 }

@@ -109,6 +109,28 @@ TEST(Reconstruction, leaves_out_landmarks_and_dangers_of_what_was_resected) {
   EXPECT_TRUE(after.landmarks.find("lower_incisal_point"));  // motions are measured by it
 }
 
+TEST(Reconstruction, keeps_own_zones_and_drops_attachments_of_resected_bone) {
+  Case patient = builtin();
+  patient.tissue.attachments = {{.bone = mandible_body, .landmark = "pogonion"},
+                                {.bone = mandible_body, .landmark = "left_gonion"}};
+  Plan plan = resected(44, 36);
+  plan.geometry = geometry_of(patient);
+  PlanZone own;
+  own.name = "tooth 44";  // as the user calls it
+  own.kind = ZoneKind::tooth;
+  own.points = {patient.landmarks.points.at("lower_right_canine_apex")};
+  own.radius_mm = 20;
+  plan.zones.push_back(own);
+  const Operated operated = apply_plan(patient, plan);
+  const auto& dangers = operated.cuts.at(0).dangers;
+  EXPECT_TRUE(std::any_of(dangers.begin(), dangers.end(), [](const DangerFinding& finding) {
+    return finding.zone == "tooth 44" && finding.distance_mm < 0;
+  }));
+  const Case after = operated_case(operated);
+  ASSERT_EQ(after.tissue.attachments.size(), 1u);
+  EXPECT_EQ(after.tissue.attachments[0].landmark, "left_gonion");
+}
+
 TEST(Reconstruction, follows_the_border_around_the_chin) {
   // Planes near one face of these defects meet the other limb, too.
   for (const auto& [from, to] : {std::pair{44, 36}, std::pair{43, 37}, std::pair{45, 36}}) {

@@ -148,7 +148,8 @@ TEST(CutPreview, BendsAndStationsHaveHandlesOnTheCut) {
       ASSERT_NE(handle, handles.end()) << station.parameter;
       EXPECT_EQ(handle->at, station.at);
       EXPECT_EQ(handle->per_unit, station.per_unit);
-      for (const double change : {-2.0, 0.0, 2.0}) {
+      const double most = split ? 4 : 12;
+      for (const double change : {-most, -2.0, 0.0, 2.0, most}) {
         cut.parameters = {{station.parameter, change}};
         const PlacedOsteotomy moved = place_osteotomy(*uncut(), cut);
         const Vector3d there = station.at + change * station.per_unit;
