@@ -120,9 +120,7 @@ TEST_F(ChinWindow, ADragKeepsToItsAxisSnapsIsStoppedByBoneAndFillsTheTable) {
   EXPECT_TRUE(press("z"));
   ASSERT_TRUE(wait_for_chin([](const auto& mm) { return std::abs(mm[0]) < 0.01 && mm[2] < -2; }));
   // The tables follow while the chin is in the hand.
-  const auto pogonion = [](const Json& s) { return s["words"].value("plan-displacement:Pog", ""); };
-  EXPECT_TRUE(
-      wait_until([&](const Json& s) { return pogonion(s).find("down") != std::string::npos; }, 30));
+  ASSERT_TRUE(wait_for_item("plan-displacements"));
   EXPECT_TRUE(wait_until([&](const Json& s) { return angle(s) != uncut_angle; }, 30));
   EXPECT_TRUE(press("x"));  // along the cut face, on which it slides
   ASSERT_TRUE(wait_for_chin([](const auto& mm) { return mm[0] > 1 && std::abs(mm[2]) < 0.6; }));
@@ -141,6 +139,10 @@ TEST_F(ChinWindow, ADragKeepsToItsAxisSnapsIsStoppedByBoneAndFillsTheTable) {
       << state()["words"].dump();
   EXPECT_TRUE(xdotool({"keyup", "ctrl"}));
   let_go();
+  click("plan-displacements");
+  EXPECT_TRUE(wait_until([](const Json& s) {
+    return s["words"].value("plan-displacement:Pog", "").find("down") != std::string::npos;
+  }));
   see("table-of-the-hand");
   EXPECT_TRUE(press("ctrl+z"));
   ASSERT_TRUE(wait_for_chin([](const auto& mm) { return std::abs(mm[2]) < 1e-6; }));
