@@ -36,9 +36,8 @@ struct CutReport {
   std::vector<CutOutcome> outcomes;            // by cut
   std::vector<std::pair<int, int>> crossings;  // cuts whose walls cross in the bone
   std::vector<CutPiece> pieces;                // what stays comes first
-  std::vector<DangerFinding>
-      dangers;            // zones near the cut faces, nearest first, without resected ones
-  double volume_mm3 = 0;  // of the bone before it
+  std::vector<DangerFinding> dangers;  // of zones that remain, near the cut faces, nearest first
+  double volume_mm3 = 0;               // of the bone before it
   double kerf_volume_mm3 = 0;
   int turned = 0;              // triangles of cut faces that face backward
   bool below_margins = false;  // allowed by the step
