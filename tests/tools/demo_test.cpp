@@ -80,7 +80,7 @@ TEST(DemoCommand, AFibulaTakesThePlaceOfAResectedJaw) {
   EXPECT_EQ(graft["insertion_path"]["state"], "free");
   EXPECT_GT(report["opening"]["widest_mm"].get<double>(), 40);
   const std::string page = read_text(out + "/report.html");
-  for (const char* words : {"resected: tumour", "Insertion path", "Mouth opening", "fibula_3"})
+  for (const char* words : {"Resected: tumour", "Insertion path", "Mouth opening", "fibula_3"})
     EXPECT_NE(page.find(words), std::string::npos) << words;
   EXPECT_EQ(page.find("<td>L1</td>"), std::string::npos);
   for (const char* file : {"insertion_path.png", "opening.png"})

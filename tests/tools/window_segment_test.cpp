@@ -86,7 +86,7 @@ TEST_F(ChinWindow, TheMenuOfAPartShowsItAsGlassAloneMeasuredAndMoved) {
   EXPECT_TRUE(wait_until([](const Json& s) { return s["measured"] == 0; }));
   choose("move");
   EXPECT_TRUE(wait_until([](const Json& s) { return s["chosen"] == "chin"; }));
-  EXPECT_TRUE(state()["items"].contains("shift:S"));
+  EXPECT_TRUE(wait_for_item("shift:S"));
   // A double click focuses: the camera turns about the chin, nearer to it.
   EXPECT_TRUE(press("Escape"));
   const Json camera = state()["camera"];
