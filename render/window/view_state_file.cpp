@@ -119,7 +119,8 @@ void ViewStateFile::update(const Window& window, const FrameState* frame,
       {"render_scale", pictures.render_scale},
       {"samples", pictures.samples},
       {"picture_finished", pictures.finished},
-      {"longest_away_ms", std::round(pictures.longest_away_ms)}};
+      {"longest_away_ms", std::round(pictures.longest_away_ms)},
+      {"longest_work_ms", std::round(pictures.longest_work_ms)}};
   json["edits"] = edits_of(view);
   json["measured_points"] = nlohmann::json::array();
   for (const PinnedPoint& point : view.measured)

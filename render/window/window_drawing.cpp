@@ -162,7 +162,7 @@ std::array<std::uintptr_t, 4> Window::State::show_ct_pictures() {
     }
     if (!shown) shown.emplace();
     if (shown->pixels != pixels) {
-      shown->texture.upload(pixels->width, pixels->height, pixels->rgba.data());
+      pacing.draw([&] { shown->texture.upload(pixels->width, pixels->height, pixels->rgba.data()); });
       shown->pixels = std::move(pixels);
     }
     names[i] = shown->texture.name();
@@ -313,7 +313,7 @@ void Window::State::request_picture() {
 bool Window::State::take_picture() {
   const auto picture = render_thread->take();
   if (!picture || picture->parts != render_request.parts) return false;
-  texture->show(*picture);
+  pacing.draw([&] { texture->show(*picture); });
   cannot_draw = false;
   pacing.governor.measured(picture->moving, picture->ms);
   pacing.pictures.picture_ms = picture->ms;
@@ -376,20 +376,22 @@ void Window::State::draw(bool always, Image* copy) {
   pacing.drawn = true;
   interface_frame();
 
-  int w = 0, h = 0;
-  glfwGetFramebufferSize(window, &w, &h);
-  glBindFramebuffer(GL_FRAMEBUFFER, 0);
-  glViewport(0, 0, w, h);
-  const ImVec4 back = ImGui::ColorConvertU32ToFloat4(palette().window);
-  glClearColor(back.x, back.y, back.z, 1);
-  glClear(GL_COLOR_BUFFER_BIT);
-  ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+  pacing.draw([&] {
+    int w = 0, h = 0;
+    glfwGetFramebufferSize(window, &w, &h);
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+    glViewport(0, 0, w, h);
+    const ImVec4 back = ImGui::ColorConvertU32ToFloat4(palette().window);
+    glClearColor(back.x, back.y, back.z, 1);
+    glClear(GL_COLOR_BUFFER_BIT);
+    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+  });
   if (copy) *copy = read_back();
   if (save_window) {
     save_window = false;
     render_thread->save(read_back(), options.picture_folder);
   }
-  glfwSwapBuffers(window);
+  pacing.draw([&] { glfwSwapBuffers(window); });
   pacing.frames_due = std::max(0, pacing.frames_due - 1);
 }
 

@@ -209,17 +209,13 @@ void Window::State::wait_for_events() {
   const double wait =
       active ? picture_interval_s - seconds_since(pacing.last_look)
              : (seconds_since(pacing.last_event) < attentive_s ? picture_interval_s : idle_wait_s);
-  if (pacing.polled)
-    pacing.pictures.longest_away_ms =
-        std::max(pacing.pictures.longest_away_ms, 1e3 * seconds_since(pacing.last_look));
-  pacing.polled = true;
+  pacing.note_time_away();
   if (wait > 0) {
     glfwWaitEventsTimeout(wait);
   } else {
     glfwPollEvents();
   }
-  pacing.last_look = Clock::now();
-  pacing.drawn = false;
+  pacing.note_look();
   // Each press and release gets its own pass over the panels, so that none is lost between
   // pictures.
   while (input.waits()) interface_frame();

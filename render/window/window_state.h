@@ -4,11 +4,13 @@
 #include <epoxy/gl.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstdint>
 #include <deque>
 #include <exception>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string_view>
@@ -97,10 +99,30 @@ struct WindowPacing {
   int counted_pictures = 0;   // since counted_from
   bool polled = false;        // whether events have been polled
   bool drawn = false;         // since then
+  double drawing_s = 0;       // time in OpenGL since then
   Clock::time_point last_request{};
   Clock::time_point last_poll = Clock::now(), last_look = last_poll, last_draw = last_poll,
                     last_change = last_poll, last_event = last_poll, counted_from = last_poll;
 
+  /// Calls OpenGL and counts the time.
+  void draw(const std::function<void()>& calls) {
+    const Clock::time_point start = Clock::now();
+    calls();
+    drawing_s += std::chrono::duration<double>(Clock::now() - start).count();
+  }
+  /// Called when the window is about to read mouse and keyboard.
+  void note_time_away() {
+    if (!std::exchange(polled, true)) return;
+    const double away_s = std::chrono::duration<double>(Clock::now() - last_look).count();
+    pictures.longest_away_ms = std::max(pictures.longest_away_ms, 1e3 * away_s);
+    pictures.longest_work_ms = std::max(pictures.longest_work_ms, 1e3 * (away_s - drawing_s));
+  }
+  /// Called when it has read them.
+  void note_look() {
+    last_look = Clock::now();
+    drawn = false;
+    drawing_s = 0;
+  }
   /// Called at an event: ImGui needs some passes to update what is hovered and held.
   void noticed() {
     frames_due = 3;

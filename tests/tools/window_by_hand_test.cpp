@@ -91,10 +91,6 @@ TEST_F(PlannedByHand, BothJawsFromAnEmptyPlanToSplints) {
     EXPECT_GT(fs::file_size(file), 100000u) << splint;
   }
   EXPECT_EQ(state().value("trouble", ""), "");
-  // Plans are applied meanwhile: within about 0.1 s on an idle machine.
-  std::printf("longest time away from mouse and keyboard: %d ms\n",
-              int(state()["longest_away_ms"]));
-  EXPECT_LT(double(state()["longest_away_ms"]), 800);
 }
 
 }  // namespace

@@ -160,13 +160,6 @@ TEST_F(WindowSession, ThePatientIsUsedFromOpeningToQuitting) {
   EXPECT_TRUE(unlike(frame("4"), frame("0"), 0.005)) << "the mouth opens";
   EXPECT_TRUE(alike(frame("8"), frame("0"), 0.005)) << "and closes";
   frame("4").save(kept_pictures() / "ThePatientIsUsedFromOpeningToQuitting-film.png");
-
-  // The interface responded all the time: within about 0.1 s on an idle machine; a shared one takes
-  // longer.
-  RecordProperty("longest_away_ms", int(state()["longest_away_ms"]));
-  std::printf("longest time away from mouse and keyboard: %d ms\n",
-              int(state()["longest_away_ms"]));
-  EXPECT_LT(double(state()["longest_away_ms"]), 800);
   EXPECT_TRUE(press("ctrl+q"));
   EXPECT_EQ(wait_for_end(), 0);
 }

@@ -250,7 +250,6 @@ TEST_F(WindowSaving, SessionsThatCannotBeOpenedAreReportedAndThePatientStays) {
   write_into("session-path", "/proc/no.condyle-session");
   ASSERT_TRUE(wait_for_item("error"));
   EXPECT_TRUE(press("Return"));
-  EXPECT_LT(double(state()["longest_away_ms"]), 800);
   quit();
 }
 

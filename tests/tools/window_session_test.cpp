@@ -154,8 +154,6 @@ TEST_F(WindowSession, AFailureIsReportedAsASentenceAndTheWindowStays) {
   click("record");
   ASSERT_TRUE(wait_for_item("error"));
   click("close-error");
-  // Loading, simulation and failures were in the background: the window never froze.
-  EXPECT_LT(double(state()["longest_away_ms"]), 800);
   // Resized to almost nothing.
   EXPECT_TRUE(xdotool({"search", "--name", "Condyle", "windowsize", "--sync", "800", "500"}));
   EXPECT_TRUE(wait_until([](const Json& s) { return double(s["view"][2]) < 500; }));
