@@ -360,7 +360,7 @@ void PlanSession::save(const std::filesystem::path& file) {
 
 PlanView PlanSession::view() const {
   if (!document_ || !state_.patient) return {};
-  PlanView view = plan_view(*document_, *state_.patient->operated, state_.patient->overlaps);
+  PlanView view = plan_view(*document_, *state_.patient->operated, state_.patient->findings);
   if (!tabulated_.empty())
     show_tables(view, document_->plan(), *state_.patient->operated, tabulated_);
   for (PlanStepView& step : view.steps) {

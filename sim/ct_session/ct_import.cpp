@@ -94,6 +94,24 @@ std::string remark_on_seeds(const Volume& volume, const CtChoice& choice) {
                      count == 1 ? "it" : "them");
 }
 
+CtChoice first_choice(const ReadScan& scan) {
+  return {.cross = centre_of(scan.ct.volume), .threshold_hu = scan.levels.low_bone()};
+}
+
+CtPictures pictures_of(const ReadScan& scan, const CtChoice& choice, bool slices, bool solid,
+                       int threads) {
+  CtPictures pictures;
+  const SliceLevels levels{choice.threshold_hu, scan.levels.skin()};
+  if (slices) pictures.slices.emplace();
+  for (std::size_t i = 0; slices && i < 3; ++i)
+    (*pictures.slices)[i] =
+        draw_slice(scan.ct.volume, static_cast<SliceSide>(i), choice.cross, levels, threads);
+  if (solid)
+    pictures.solid = std::make_shared<const CtPixels>(scan.solid->picture(
+        solid_pixels, choice.threshold_hu, choice.turn_deg, choice.tilt_deg, threads));
+  return pictures;
+}
+
 }  // namespace
 
 std::optional<fs::path> scan_of(const std::vector<fs::path>& files) {
@@ -143,7 +161,9 @@ void CtImport::open(const fs::path& scan) {
     const Progress listing = [&](std::string_view, double fraction) {
       report(progress, "listing the series", fraction);
     };
-    return Done{.folder = std::make_shared<const CtFolder>(scan, threads, listing), .scan = {}};
+    return Done{.folder = std::make_shared<const CtFolder>(scan, threads, listing),
+                .scan = {},
+                .pictures = {}};
   });
 }
 
@@ -156,6 +176,7 @@ void CtImport::read(int series) {
 
 void CtImport::start_reading(int series) {
   scan_.reset();
+  stop_drawing();
   show([](CtView& view) { view.stage = CtStage::reading; });
   job_.start(
       [path = path_, folder = folder_, series, threads = threads_](const Progress& progress) {
@@ -170,7 +191,9 @@ void CtImport::start_reading(int series) {
         scan->levels = tissue_levels(scan->ct.volume, path.string());
         scan->solid =
             std::make_shared<const SolidScan>(scan->ct.volume, scan->levels.low_bone(), threads);
-        return Done{.folder = {}, .scan = std::move(scan)};
+        report(progress, "drawing the slices", 0.95);
+        CtPictures pictures = pictures_of(*scan, first_choice(*scan), true, true, threads);
+        return Done{.folder = {}, .scan = std::move(scan), .pictures = std::move(pictures)};
       });
 }
 
@@ -194,19 +217,41 @@ void CtImport::list_series(const CtFolder& folder) {
   });
 }
 
-void CtImport::draw(CtView& view, bool slices, bool solid) const {
-  const Volume& volume = scan_->ct.volume;
-  const SliceLevels levels{choice_.threshold_hu, scan_->levels.skin()};
-  for (std::size_t i = 0; slices && i < 3; ++i)
-    view.slices[i] = draw_slice(volume, static_cast<SliceSide>(i), choice_.cross, levels, threads_);
-  if (solid)
-    view.solid = std::make_shared<const CtPixels>(scan_->solid->picture(
-        solid_pixels, choice_.threshold_hu, choice_.turn_deg, choice_.tilt_deg, threads_));
+/// Draws pictures of the present choice, after those that are being drawn.
+void CtImport::draw(bool slices, bool solid) {
+  slices_due_ |= slices;
+  solid_due_ |= solid;
+  if (drawing_.active() || !(slices_due_ || solid_due_)) return;
+  drawing_.start([scan = scan_, choice = choice_, slices = std::exchange(slices_due_, false),
+                  solid = std::exchange(solid_due_, false), threads = threads_](const Progress&) {
+    return pictures_of(*scan, choice, slices, solid, threads);
+  });
 }
 
-void CtImport::show_scan(std::shared_ptr<const ReadScan> scan) {
-  scan_ = std::move(scan);
-  choice_ = {.cross = centre_of(scan_->ct.volume), .threshold_hu = scan_->levels.low_bone()};
+void CtImport::stop_drawing() {
+  drawing_.drop();
+  slices_due_ = solid_due_ = false;
+}
+
+void CtImport::show_pictures(CtPictures pictures) {
+  show([&](CtView& view) {
+    if (pictures.slices) view.slices = std::move(*pictures.slices);
+    if (pictures.solid) view.solid = std::move(pictures.solid);
+  });
+}
+
+bool CtImport::take_pictures() {
+  if (!drawing_.done()) return false;
+  const auto pictures = drawing_.take();
+  if (!pictures || !view_) return false;
+  show_pictures(*pictures);
+  draw(false, false);
+  return true;
+}
+
+void CtImport::show_scan(const Done& read) {
+  scan_ = read.scan;
+  choice_ = first_choice(*scan_);
   show([&](CtView& view) {
     view.stage = CtStage::slices;
     view.volume_notes = scan_->ct.notes;
@@ -215,8 +260,8 @@ void CtImport::show_scan(std::shared_ptr<const ReadScan> scan) {
     view.highest_hu = highest_bone_hu;
     ++opened_;
     view.opened = opened_;  // choices of another volume are void
-    draw(view, true, true);
   });
+  show_pictures(read.pictures);
 }
 
 void CtImport::choose(const CtChoice& choice) {
@@ -229,8 +274,8 @@ void CtImport::choose(const CtChoice& choice) {
   show([&](CtView& view) {
     view.chosen = choice_;
     view.seed_remark = remark_on_seeds(scan_->ct.volume, choice_);
-    draw(view, slices, solid);
   });
+  draw(slices, solid);
 }
 
 CtMaking CtImport::begin_making(const fs::path& folder) {
@@ -264,6 +309,7 @@ void CtImport::cancel() {
 
 void CtImport::close() {
   job_.drop();
+  stop_drawing();
   view_.reset();
   scan_.reset();
   folder_.reset();
@@ -271,15 +317,16 @@ void CtImport::close() {
 }
 
 bool CtImport::update() {
-  if (!job_.done()) return false;
+  const bool has_pictures = take_pictures();
+  if (!job_.done()) return has_pictures;
   try {
     const auto done = job_.take();
-    if (!done) return false;
+    if (!done) return has_pictures;
     if (done->folder) {
       folder_ = done->folder;
       list_series(*folder_);
     }
-    if (done->scan) show_scan(done->scan);
+    if (done->scan) show_scan(*done);
   } catch (...) {
     if (folder_)
       show([](CtView& view) { view.stage = CtStage::series; });

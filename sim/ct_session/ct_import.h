@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -28,6 +29,12 @@ struct ReadScan {
   std::shared_ptr<const SolidScan> solid;
 };
 
+/// Pictures of a volume; absent: as they were.
+struct CtPictures {
+  std::optional<std::array<CtSliceView, 3>> slices;
+  std::shared_ptr<const CtPixels> solid;
+};
+
 /// A patient to be made of a scan.
 struct CtMaking {
   std::shared_ptr<const ReadScan> scan;
@@ -39,18 +46,18 @@ struct CtMaking {
 /// case_of_ct(), MachineError where it cannot be saved.
 Case make_ct_patient(const CtMaking& making, const Progress& progress);
 
-/// The import of a CT behind a front end: series are listed and read in the background, slices are
-/// drawn at once.
+/// The import of a CT behind a front end: series are listed and read, and pictures drawn, in the
+/// background.
 class CtImport {
  public:
   CtImport(RetiredWork& retired, std::function<void()> notify, int threads)
-      : threads_(threads), job_(retired, std::move(notify)) {}
+      : threads_(threads), job_(retired, notify), drawing_(retired, std::move(notify)) {}
 
   /// Lists the series of a folder, or reads the volume of a file.
   void open(const std::filesystem::path& scan);
   /// Reads a series of the list, by its number.
   void read(int series);
-  /// Draws what the user has chosen. Nothing without a volume.
+  /// What the user has chosen; its pictures follow. Nothing without a volume.
   void choose(const CtChoice& choice);
   /// The patient as chosen, for make_ct_patient(); the view waits for it. throws: InputError for a
   /// folder that cannot take a case.
@@ -65,6 +72,8 @@ class CtImport {
   /// Takes finished work. Returns whether the view has changed. throws: what ended the work, after
   /// which the view is as before the work; without one the import is closed.
   bool update();
+  /// Whether pictures of the choice are still to come.
+  bool drawing() const { return drawing_.active(); }
   /// None: nothing is imported.
   const std::shared_ptr<const CtView>& view() const { return view_; }
   const CtChoice& choice() const { return choice_; }
@@ -74,6 +83,7 @@ class CtImport {
   struct Done {
     std::shared_ptr<const CtFolder> folder;
     std::shared_ptr<const ReadScan> scan;
+    CtPictures pictures;  // of the scan as first shown
   };
 
  public:
@@ -83,8 +93,11 @@ class CtImport {
   void start_reading(int series);
   void show(const std::function<void(CtView&)>& edit);
   void list_series(const CtFolder& folder);
-  void show_scan(std::shared_ptr<const ReadScan> scan);
-  void draw(CtView& view, bool slices, bool solid) const;
+  void show_scan(const Done& read);
+  void draw(bool slices, bool solid);
+  void show_pictures(CtPictures pictures);
+  bool take_pictures();
+  void stop_drawing();
 
   int threads_;
   int opened_ = 0;
@@ -94,6 +107,8 @@ class CtImport {
   CtChoice choice_;
   std::shared_ptr<const CtView> view_;
   Job<Done> job_;
+  Job<CtPictures> drawing_;
+  bool slices_due_ = false, solid_due_ = false;  // when the pictures being drawn are done
 };
 
 }  // namespace condyle

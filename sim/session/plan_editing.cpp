@@ -277,7 +277,8 @@ std::vector<PlanNumber> numbers_of(const Operated& operated, const Plan& plan,
   return numbers;
 }
 
-PlanStepView step_view(const Plan& plan, const Operated& operated, const PlanStep& step) {
+PlanStepView step_view(const Plan& plan, const Operated& operated, const OperationFindings& findings,
+                       const PlanStep& step) {
   PlanStepView view{.id = step.id, .title = step_title(step.action)};
   view.details = step_details(step.action);
   if (const auto* cut = std::get_if<CutStep>(&step.action)) {
@@ -295,8 +296,8 @@ PlanStepView step_view(const Plan& plan, const Operated& operated, const PlanSte
   } else if (const auto* graft = std::get_if<GraftStep>(&step.action)) {
     view.title = "Graft " + readable_name(graft->name);
     view.numbers = numbers_of(*graft);
-    for (const GraftLayout& layout : operated.grafts)
-      if (layout.step.name == graft->name) view.findings = graft_sentences(operated, layout);
+    if (const auto found = findings.grafts.find(graft->name); found != findings.grafts.end())
+      view.findings = found->second;
   } else if (std::holds_alternative<NoteStep>(step.action)) {
     view.title = "Note";
   } else if (const auto* move = std::get_if<MoveStep>(&step.action)) {
@@ -435,10 +436,11 @@ void show_tables(PlanView& view, const Plan& plan, const Operated& operated,
 }
 
 PlanView plan_view(const PlanDocument& document, const Operated& operated,
-                   const std::vector<SegmentOverlap>& overlaps) {
+                   const OperationFindings& findings) {
   const Plan& plan = document.plan();
   PlanView view{.name = plan.name, .file = document.file()};
-  for (const PlanStep& step : plan.steps) view.steps.push_back(step_view(plan, operated, step));
+  for (const PlanStep& step : plan.steps) 
+    view.steps.push_back(step_view(plan, operated, findings, step));
   for (const std::string& name : osteotomy_names())
     view.osteotomies.push_back({name, osteotomy_label(name)});
   const BodyTree& bodies = operated.patient.bodies;
@@ -450,7 +452,7 @@ PlanView plan_view(const PlanDocument& document, const Operated& operated,
       view.arches.push_back({bodies[arch].name, display_name(bodies[arch].name)});
   view.undo = document.history().undoable().value_or("");
   view.redo = document.history().redoable().value_or("");
-  for (const SegmentOverlap& overlap : overlaps) {
+  for (const SegmentOverlap& overlap : findings.overlaps) {
     view.findings.push_back(overlap_text(overlap, present_landmarks(operated)));
     if (overlap.kind != SegmentOverlap::Kind::trimmed) continue;
     for (const std::string& body : {overlap.body_a, overlap.body_b})

@@ -7,7 +7,7 @@
 
 #include "sim/case/case.h"
 #include "sim/choice/plan_view.h"
-#include "sim/operation/segment_overlaps.h"
+#include "sim/session/operation_findings.h"
 #include "sim/session/plan_document.h"
 
 namespace condyle {
@@ -43,8 +43,8 @@ void show_tables(PlanView& view, const Plan& plan, const Operated& operated,
                  const HeldSegments& held = {});
 
 /// What a front end shows of a plan: steps with their findings, overlaps, displacements and
-/// cephalometry. `operated`: the plan on its case; `overlaps`: of it.
+/// cephalometry. `operated`: the plan on its case; `findings`: of it.
 PlanView plan_view(const PlanDocument& document, const Operated& operated,
-                   const std::vector<SegmentOverlap>& overlaps);
+                   const OperationFindings& findings);
 
 }  // namespace condyle

@@ -36,15 +36,15 @@ PlanStages::Made PlanStages::pieces(const Plan& plan, Operated operated) const {
 PlanStages::Made PlanStages::with_contact(const SessionPatient& pieces, const Plan& plan,
                                           const SessionPatient& earlier,
                                           const Progress& progress) const {
-  report(progress, "measuring overlaps", 0);
-  std::vector<SegmentOverlap> overlaps = segment_overlaps(*pieces.operated);
+  report(progress, "measuring overlaps and grafts", 0);
+  OperationFindings findings = find_in_operation(*pieces.operated);
   return completed_patient(
       {.folder = folder_,
        .scene = scene_with_contact(operate(prepared_, plan, *pieces.operated), settings_,
                                    &earlier.scene.contacts, progress),
        .uncut = uncut_,
        .operated = pieces.operated,
-       .overlaps = std::move(overlaps),
+       .findings = std::move(findings),
        .surfaces = pieces.surfaces});
 }
 

@@ -48,13 +48,13 @@ std::shared_ptr<const SessionPatient> make_session_patient(Case patient,
   Scene scene = build();
   auto operated =
       std::make_shared<const Operated>(apply_plan(patient, plan ? *plan : empty_plan(patient)));
-  std::vector<SegmentOverlap> overlaps = segment_overlaps(*operated);
+  OperationFindings findings = find_in_operation(*operated);
   return completed_patient({.folder = std::move(folder),
                             .scene = std::move(scene),
                             .trouble = std::move(trouble),
                             .uncut = std::make_shared<const Case>(std::move(patient)),
                             .operated = std::move(operated),
-                            .overlaps = std::move(overlaps)},
+                            .findings = std::move(findings)},
                            settings.threads);
 }
 

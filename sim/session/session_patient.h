@@ -10,8 +10,8 @@
 #include "sim/case/muscle.h"
 #include "sim/frame/before_operation.h"
 #include "sim/frame/landmark_vertex.h"
-#include "sim/operation/segment_overlaps.h"
 #include "sim/plan/plan.h"
+#include "sim/session/operation_findings.h"
 #include "sim/simulator/simulator.h"
 
 namespace condyle {
@@ -31,7 +31,7 @@ struct SessionPatient {
   std::string trouble = {};          // what had to be omitted, as a sentence
   std::shared_ptr<const Case> uncut = nullptr;         // before the operation of the plan
   std::shared_ptr<const Operated> operated = nullptr;  // by the plan, which may be empty
-  std::vector<SegmentOverlap> overlaps = {};           // at the planned positions
+  OperationFindings findings = {};                     // of the operation
   std::optional<SurfaceFacts> surfaces = {};           // there in every completed patient
 };
 

@@ -39,6 +39,13 @@ class CtImports : public testing::Test {
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     import_.update();
   }
+  /// Waits for the pictures of all choices.
+  void draw() {
+    for (int i = 0; i < 6000 && import_.drawing(); ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+      import_.update();
+    }
+  }
   const CtView& view() { return *import_.view(); }
   std::string refusal_of_making(const fs::path& folder) {
     try {
@@ -95,13 +102,22 @@ TEST_F(CtImports, ListsReadsAndShowsASeries) {
   CtChoice choice = before.first;
   choice.turn_deg += 40;
   import_.choose(choice);
+  EXPECT_EQ(view().chosen, choice) << "at once; its pictures follow";
+  draw();
   EXPECT_EQ(view().slices[0].picture, before.slices[0].picture);
   EXPECT_NE(view().solid, before.solid);
-  choice.cross.z() += 30;
+  // Choices during a drawing are drawn after it, all at once.
+  choice.turn_deg += 40;
   import_.choose(choice);
+  choice.cross.z() += 10;
+  import_.choose(choice);
+  choice.cross.z() += 20;
+  import_.choose(choice);
+  draw();
   EXPECT_EQ(view().slices[0].number, before.slices[0].number + 12);
   choice.threshold_hu = 900;
   import_.choose(choice);
+  draw();
   EXPECT_NE(view().slices[1].picture->rgba, before.slices[1].picture->rgba);
 }
 

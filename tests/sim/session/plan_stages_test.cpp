@@ -50,7 +50,7 @@ TEST(PlanStages, LeadToThePatientMadeAtOnce) {
         timed_stage("at once", [&] { return make_session_patient(head, {}, settings, {}, plan); });
     EXPECT_EQ(face->trouble, "");
     EXPECT_EQ(state_hash(face->at_rest), state_hash(at_once->at_rest));
-    EXPECT_EQ(face->overlaps.size(), at_once->overlaps.size());
+    EXPECT_EQ(face->findings.overlaps.size(), at_once->findings.overlaps.size());
     ASSERT_EQ(face->scene.patient.parts.size(), at_once->scene.patient.parts.size());
     for (std::size_t i = 0; i < face->scene.patient.parts.size(); ++i)
       EXPECT_EQ(face->scene.patient.parts[i].mesh.vertices,
