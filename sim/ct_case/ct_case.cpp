@@ -3,13 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <iterator>
 #include <utility>
 
 #include "engine/core/error.h"
+#include "engine/core/parallel.h"
 #include "engine/segmentation/scan_surfaces.h"
 #include "sim/case/import_checks.h"
 #include "sim/case/soft_landmarks.h"
 #include "sim/case/tooth_labels.h"
+#include "sim/ct_case/fitted_seeds.h"
 #include "sim/ct_case/tooth_voxels.h"
 #include "sim/motion/joint_surfaces.h"
 
@@ -20,7 +24,6 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr int fitted_triangles = 120000;  // of the surfaces that the template is fitted to
-constexpr double least_template_error_mm = 1, most_template_error_mm = 3;
 constexpr double least_tooth_mm3 = 20;
 
 /// A stage of the work as a part of the whole.
@@ -31,23 +34,10 @@ Progress part_of(const Progress& whole, double from, double to) {
   };
 }
 
-void append_mesh(TriMesh& mesh, const TriMesh& other) {
-  const Eigen::Vector3i offset = Eigen::Vector3i::Constant(static_cast<int>(mesh.vertices.size()));
-  mesh.vertices.insert(mesh.vertices.end(), other.vertices.begin(), other.vertices.end());
-  for (const auto& t : other.triangles) mesh.triangles.push_back(t + offset);
-}
-
 const TriMesh& carried_mesh(const AnatomyFit& fit, Role role) {
   static const TriMesh none;
   const CarriedPart* found = fit.find(role);
   return found ? found->part.mesh : none;
-}
-
-/// Bone of the template with its teeth.
-SeedSurface seed_surface(const AnatomyFit& fit, Role bone, Role teeth, VoxelLabel label) {
-  SeedSurface surface{carried_mesh(fit, bone), label};
-  append_mesh(surface.mesh, carried_mesh(fit, teeth));
-  return surface;
 }
 
 /// From the axes of the scan to LPS.
@@ -96,11 +86,16 @@ class CtSegmentation {
     if (request_.threshold_hu) options.threshold_hu = *request_.threshold_hu;
     bone_ =
         find_bone(volume_, levels_, head_, request_.source, options, part_of(progress, 0.3, 0.6));
-    whole_ = bone_surface(volume_, bone_, skull_label, surface_options(fitted_triangles),
-                          part_of(progress, 0.6, 0.8));
-    if (head_.has_outside && request_.face)
-      skin_ = skin_surface(volume_, levels_, head_, bone_.metal, request_.source,
-                           surface_options(request_.face_triangles), part_of(progress, 0.8, 1));
+    // Side by side: decimation has one thread.
+    const bool has_skin = head_.has_outside && request_.face;
+    parallel_for(has_skin ? 2 : 1, request_.threads, [&](std::size_t i) {
+      if (i == 0)
+        whole_ = bone_surface(volume_, bone_, skull_label, surface_options(fitted_triangles),
+                              part_of(progress, 0.6, 1));
+      else
+        skin_ = skin_surface(volume_, levels_, head_, bone_.metal, request_.source,
+                             surface_options(request_.face_triangles));
+    });
   }
 
   void fit_template(const Progress& progress) {
@@ -120,16 +115,11 @@ class CtSegmentation {
     if (!has_skull() && !by_hand) {
       std::replace(bone_.label.begin(), bone_.label.end(), skull_label, mandible_label);
     } else if (has_mandible() || by_hand) {
-      std::vector<SeedSurface> surfaces;
-      if (has_skull())
-        surfaces.push_back(seed_surface(fit, Role::skull, Role::upper_teeth, skull_label));
-      if (has_mandible())
-        surfaces.push_back(seed_surface(fit, Role::mandible, Role::lower_teeth, mandible_label));
-      const double error = std::clamp(std::max(fit.skull.rms_mm, fit.mandible.rms_mm),
-                                      least_template_error_mm, most_template_error_mm);
-      const auto seeds = seed_labels(volume_, bone_, surfaces, request_.seeds,
-                                     {.template_error_mm = error, .threads = request_.threads},
-                                     part_of(progress, 0, 0.4));
+      const FittedSeeds fitted = fitted_seeds(fit);
+      const auto seeds =
+          seed_labels(volume_, bone_, fitted.surfaces, request_.seeds,
+                      {.template_error_mm = fitted.error_mm, .threads = request_.threads},
+                      part_of(progress, 0, 0.4));
       split_bones(volume_, seeds, bone_, request_.threads, part_of(progress, 0.4, 0.9));
     }
     if (has_skull())
@@ -158,13 +148,16 @@ class CtSegmentation {
                           {mandible_label, Role::mandible, "mandible", request_.mandible_triangles},
                           {upper_teeth_label, Role::upper_teeth, "upper-teeth", tooth_triangles},
                           {lower_teeth_label, Role::lower_teeth, "lower-teeth", tooth_triangles}};
-    int done = 0;
-    for (const Wanted& wanted : all) {
-      SurfaceOptions options = surface_options(wanted.triangles);
-      if (is_teeth(wanted.role)) options.least_piece_mm3 = least_tooth_mm3;
-      ScanSurface surface = bone_surface(volume_, bone_, wanted.label, options,
-                                         part_of(progress, 0.25 * done, 0.25 * (done + 1)));
-      ++done;
+    std::array<ScanSurface, std::size(all)> surfaces;
+    parallel_for(surfaces.size(), request_.threads, [&](std::size_t i) {
+      SurfaceOptions options = surface_options(all[i].triangles);
+      if (is_teeth(all[i].role)) options.least_piece_mm3 = least_tooth_mm3;
+      surfaces[i] = bone_surface(volume_, bone_, all[i].label, options,
+                                 i == 0 ? part_of(progress, 0, 1) : Progress{});
+    });
+    for (std::size_t i = 0; i < surfaces.size(); ++i) {
+      const Wanted& wanted = all[i];
+      ScanSurface& surface = surfaces[i];
       if (surface.mesh.empty()) continue;
       TriMesh mesh = std::move(surface.mesh);
       const CarriedPart* carried = made_.fit.find(wanted.role);

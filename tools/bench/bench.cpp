@@ -65,7 +65,8 @@ void add_bench(Commands& commands) {
                          "condyle bench import --json", run_bench_import);
   import.add_option("--only", options->part,
                     "Measure one scan (plain, \"flat voxels\", blurred, fillings, table, \"dark "
-                    "marrow\", \"teeth touch\", turned) or the time; default all");
+                    "marrow\", \"teeth touch\", turned), other heads with seeds of the fitted "
+                    "template (fitted), or the time; default all");
   CLI::App& convergence =
       add("convergence", "The displayed face of tissues of several sizes, beside the finest",
           "condyle bench convergence --sizes 1000 2000 --json", run_bench_convergence);

@@ -11,6 +11,8 @@
 #include "engine/mesh/topology.h"
 #include "engine/segmentation/scan_surfaces.h"
 #include "engine/segmentation/split_bones.h"
+#include "sim/ct_case/ct_case.h"
+#include "sim/ct_case/fitted_seeds.h"
 #include "sim/phantom/phantom.h"
 #include "sim/scanner/scan_accuracy.h"
 #include "tools/bench/baseline/tissue_target.h"
@@ -24,6 +26,9 @@ using Json = nlohmann::ordered_json;
 
 constexpr double usual_noise_hu = 80;  // up to here the goals of usual scans hold
 constexpr std::array<double, 3> template_errors_mm = {1, 2, 3};  // rms
+constexpr std::uint64_t fitted_heads = 3;
+constexpr const char* warped_surfaces = "the true surfaces, moved and warped";
+constexpr const char* fitted_template = "the built-in patient, fitted";
 
 /// One scan of the jaws, measured at several levels of noise.
 struct BenchScan {
@@ -104,7 +109,33 @@ class ImportBench {
     }
   }
 
-  /// A whole head of 512 x 512 x 300 voxels, from the volume to decimated surfaces.
+  /// Another head, parted by seeds of the built-in patient that is fitted to its bone.
+  void measure_fit(std::uint64_t seed) {
+    HeadChoice choice;
+    choice.seed = seed;
+    BenchScan what{.name = fmt::format("head {}", seed), .settings = {}, .noise_hu = {}};
+    what.settings.spacing_mm = {1, 1, 1};
+    what.settings.noise_hu = 40;
+    what.settings.threads = common_.threads;
+    const CtScan scan = scan_ct(ScannedHead(choice), what.settings);
+    const Volume& volume = scan.volume;
+    const int threads = common_.threads;
+    const TissueLevels levels = tissue_levels(volume, "scan");
+    BoneVoxels bone = find_bone(volume, levels, find_head(volume, levels, "scan", threads), "scan",
+                                {.threads = threads});
+    AnatomyScan surfaces;
+    surfaces.bone = bone_surface(volume, bone, skull_label,
+                                 {.target_triangles = 120000, .threads = threads})
+                        .mesh;
+    const FittedSeeds fitted = fitted_seeds(fit_anatomy(surfaces, patient_, {.threads = threads}));
+    const auto seeds = seed_labels(volume, bone, fitted.surfaces, {},
+                                   {.template_error_mm = fitted.error_mm, .threads = threads});
+    split_bones(volume, seeds, bone, threads);
+    add_split(what, what.settings.noise_hu, fitted.error_mm, split_errors(scan, bone, seeds),
+              fitted_template);
+  }
+
+  /// A whole head of 512 x 512 x 300 voxels, from the volume to decimated surfaces, and to a case.
   void measure_time() {
     CtSettings settings;
     settings.spacing_mm = {0.45, 0.45, 0.8};
@@ -132,6 +163,7 @@ class ImportBench {
                                      {.target_triangles = 200000, .threads = common_.threads}));
     const double seconds = watch.wall_ms() / 1000, peak = peak_mb();
     results_.push_back({{"name", "import.time"},
+                        {"template", "given"},
                         {"median", seconds},
                         {"p95", seconds},
                         {"unit", "s"},
@@ -148,6 +180,32 @@ class ImportBench {
                  "  import.time   512 x 512 x 300: {:.1f} s (goal 60; processor {:.1f} s, split "
                  "after {:.1f} s), peak {:.0f} MB (goal 2048)\n",
                  seconds, watch.cpu_ms() / 1000, split_s, peak);
+    measure_case(volume);
+  }
+
+  void measure_case(const Volume& volume) {
+    reset_peak();
+    const Stopwatch watch;
+    const CtCase made =
+        case_of_ct(volume, patient_, {.name = "scan", .threads = common_.threads});
+    const double seconds = watch.wall_ms() / 1000, peak = peak_mb();
+    results_.push_back({{"name", "import.time"},
+                        {"template", "fitted"},
+                        {"median", seconds},
+                        {"p95", seconds},
+                        {"unit", "s"},
+                        {"goal", 90},
+                        {"cpu_median", watch.cpu_ms() / 1000},
+                        {"peak_mb", peak},
+                        {"peak_goal_mb", 2048},
+                        {"size", volume.size},
+                        {"parts", made.patient.parts.size()},
+                        {"threads", common_.threads}});
+    if (!common_.quiet)
+      fmt::print(stderr,
+                 "  import.time   the same with the template's fit, to a case: {:.1f} s (goal 90; "
+                 "processor {:.1f} s), peak {:.0f} MB (goal 2048)\n",
+                 seconds, watch.cpu_ms() / 1000, peak);
   }
 
   void print_json() const {
@@ -249,9 +307,10 @@ class ImportBench {
     results_.push_back(std::move(added));
   }
   void add_split(const BenchScan& what, double noise_hu, double error_mm,
-                 const SplitErrors& errors) {
+                 const SplitErrors& errors,
+                 const char* seeds = warped_surfaces) {
     Json added = row("import.split", what, noise_hu);
-    added["seeds"] = "the true surfaces, moved and warped";
+    added["seeds"] = seeds;
     added["template_error_mm"] = error_mm;
     added["wrong_percent"] = errors.wrong_percent();
     added["goal"] = 0.1;
@@ -263,9 +322,10 @@ class ImportBench {
     added["voxels"] = errors.voxels;
     if (!common_.quiet)
       fmt::print(stderr,
-                 "  {:<14}{:<14}{:>9.2f}{:>9.0f}  template off by {:.0f} mm: wrong {:.4f} % (0.1), "
+                 "  {:<14}{:<14}{:>9.2f}{:>9.0f}  template {}: wrong {:.4f} % (0.1), "
                  "unlabelled {:.3f} %, wrong seeds {}\n",
-                 "import.split", what.name, added["voxel_mm"].get<double>(), noise_hu, error_mm,
+                 "import.split", what.name, added["voxel_mm"].get<double>(), noise_hu,
+                 seeds == fitted_template ? "fitted" : fmt::format("off by {:.0f} mm", error_mm),
                  errors.wrong_percent(), added["unlabelled_percent"].get<double>(),
                  errors.wrong_seeds);
     results_.push_back(std::move(added));
@@ -286,6 +346,8 @@ int run_bench_import(const BenchOptions& options, const CommonOptions& common) {
   if (options.part != "time")
     for (const BenchScan& scan : bench_scans(common.threads))
       if (options.part.empty() || options.part == scan.name) bench.measure(scan);
+  if (options.part.empty() || options.part == "fitted")
+    for (std::uint64_t seed = 1; seed <= fitted_heads; ++seed) bench.measure_fit(seed);
   if (options.part.empty() || options.part == "time") bench.measure_time();
   if (common.json) bench.print_json();
   return 0;
