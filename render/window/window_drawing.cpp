@@ -162,7 +162,8 @@ std::array<std::uintptr_t, 4> Window::State::show_ct_pictures() {
     }
     if (!shown) shown.emplace();
     if (shown->pixels != pixels) {
-      pacing.draw([&] { shown->texture.upload(pixels->width, pixels->height, pixels->rgba.data()); });
+      pacing.draw(
+          [&] { shown->texture.upload(pixels->width, pixels->height, pixels->rgba.data()); });
       shown->pixels = std::move(pixels);
     }
     names[i] = shown->texture.name();

@@ -31,8 +31,8 @@ FittedSeeds fitted_seeds(const AnatomyFit& fit) {
     seeds.surfaces.push_back(seed_surface(fit, Role::skull, Role::upper_teeth, skull_label));
   if (fit.mandible.present)
     seeds.surfaces.push_back(seed_surface(fit, Role::mandible, Role::lower_teeth, mandible_label));
-  seeds.error_mm = std::clamp(std::max(fit.skull.rms_mm, fit.mandible.rms_mm), least_error_mm,
-                              most_error_mm);
+  seeds.error_mm =
+      std::clamp(std::max(fit.skull.rms_mm, fit.mandible.rms_mm), least_error_mm, most_error_mm);
   return seeds;
 }
 

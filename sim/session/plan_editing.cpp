@@ -277,8 +277,8 @@ std::vector<PlanNumber> numbers_of(const Operated& operated, const Plan& plan,
   return numbers;
 }
 
-PlanStepView step_view(const Plan& plan, const Operated& operated, const OperationFindings& findings,
-                       const PlanStep& step) {
+PlanStepView step_view(const Plan& plan, const Operated& operated,
+                       const OperationFindings& findings, const PlanStep& step) {
   PlanStepView view{.id = step.id, .title = step_title(step.action)};
   view.details = step_details(step.action);
   if (const auto* cut = std::get_if<CutStep>(&step.action)) {
@@ -439,7 +439,7 @@ PlanView plan_view(const PlanDocument& document, const Operated& operated,
                    const OperationFindings& findings) {
   const Plan& plan = document.plan();
   PlanView view{.name = plan.name, .file = document.file()};
-  for (const PlanStep& step : plan.steps) 
+  for (const PlanStep& step : plan.steps)
     view.steps.push_back(step_view(plan, operated, findings, step));
   for (const std::string& name : osteotomy_names())
     view.osteotomies.push_back({name, osteotomy_label(name)});

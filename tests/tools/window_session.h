@@ -50,7 +50,8 @@ class WindowSession : public testing::Test {
     const Json now = state();
     if (now.empty()) return;
     const int away = now["longest_away_ms"], work = now["longest_work_ms"];
-    std::printf("longest time away from mouse and keyboard: %d ms, without OpenGL %d ms\n", away, work);
+    std::printf("longest time away from mouse and keyboard: %d ms, without OpenGL %d ms\n", away,
+                work);
     EXPECT_LT(away, 800);
   }
   void start(std::vector<std::string> arguments) {

@@ -124,9 +124,9 @@ class ImportBench {
     BoneVoxels bone = find_bone(volume, levels, find_head(volume, levels, "scan", threads), "scan",
                                 {.threads = threads});
     AnatomyScan surfaces;
-    surfaces.bone = bone_surface(volume, bone, skull_label,
-                                 {.target_triangles = 120000, .threads = threads})
-                        .mesh;
+    surfaces.bone =
+        bone_surface(volume, bone, skull_label, {.target_triangles = 120000, .threads = threads})
+            .mesh;
     const FittedSeeds fitted = fitted_seeds(fit_anatomy(surfaces, patient_, {.threads = threads}));
     const auto seeds = seed_labels(volume, bone, fitted.surfaces, {},
                                    {.template_error_mm = fitted.error_mm, .threads = threads});
@@ -186,8 +186,7 @@ class ImportBench {
   void measure_case(const Volume& volume) {
     reset_peak();
     const Stopwatch watch;
-    const CtCase made =
-        case_of_ct(volume, patient_, {.name = "scan", .threads = common_.threads});
+    const CtCase made = case_of_ct(volume, patient_, {.name = "scan", .threads = common_.threads});
     const double seconds = watch.wall_ms() / 1000, peak = peak_mb();
     results_.push_back({{"name", "import.time"},
                         {"template", "fitted"},
@@ -306,8 +305,7 @@ class ImportBench {
                  errors.median_mm, errors.bias_mm);
     results_.push_back(std::move(added));
   }
-  void add_split(const BenchScan& what, double noise_hu, double error_mm,
-                 const SplitErrors& errors,
+  void add_split(const BenchScan& what, double noise_hu, double error_mm, const SplitErrors& errors,
                  const char* seeds = warped_surfaces) {
     Json added = row("import.split", what, noise_hu);
     added["seeds"] = seeds;

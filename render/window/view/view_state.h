@@ -196,8 +196,8 @@ struct PictureStatistics {
   // Longest time between two readings of mouse and keyboard, without waiting for them.
   double longest_away_ms = 0;
   double longest_work_ms = 0;  // of them, without the time in OpenGL
-  double render_scale = 1;  // 1 is full resolution
-  int samples = 1;          // of multisampling
+  double render_scale = 1;     // 1 is full resolution
+  int samples = 1;             // of multisampling
 };
 
 }  // namespace condyle
