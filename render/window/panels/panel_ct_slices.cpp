@@ -114,8 +114,11 @@ void Panels::Drawing::ct_slice(std::size_t which, const ViewRect& pane) {
     }
   }
   if (hovered && io.MouseWheel != 0) {
-    const double first = slice.number - 1, last = slice.count - slice.number;
-    const double steps = std::clamp<double>(std::round(io.MouseWheel), -first, last);
+    // From the chosen slice: the one that is drawn may be an earlier one.
+    const double ahead = (form.choice.cross - slice.corner).dot(across) / slice.step.norm();
+    const double number = std::clamp<double>(slice.number + std::round(ahead), 1, slice.count);
+    const double steps =
+        std::clamp<double>(std::round(io.MouseWheel), 1 - number, slice.count - number);
     form.choice.cross = form.choice.cross + steps * slice.step;
   }
   // The crosshair, with a gap in its middle.
