@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <array>
+#include <future>
 #include <iterator>
+#include <mutex>
+#include <numeric>
 #include <utility>
 
 #include "engine/core/error.h"
-#include "engine/core/parallel.h"
 #include "engine/segmentation/scan_surfaces.h"
 #include "sim/case/import_checks.h"
 #include "sim/case/soft_landmarks.h"
@@ -49,6 +51,27 @@ Matrix3d to_lps(ScanFrame frame) {
   return signs.asDiagonal();
 }
 
+/// The progress of several works that are done in parallel.
+class JointProgress {
+ public:
+  JointProgress(const Progress& whole, std::size_t works) : whole_(whole), done_(works, 0) {}
+
+  Progress of(std::size_t work) {
+    if (!whole_) return {};
+    return [this, work](std::string_view what, double fraction) {
+      const std::lock_guard lock(mutex_);
+      done_[work] = fraction;
+      whole_(what,
+             std::accumulate(done_.begin(), done_.end(), 0.0) / static_cast<double>(done_.size()));
+    };
+  }
+
+ private:
+  const Progress& whole_;
+  std::mutex mutex_;
+  std::vector<double> done_;
+};
+
 /// The segmentation of one scan, in steps.
 class CtSegmentation {
  public:
@@ -78,6 +101,13 @@ class CtSegmentation {
     return {.target_triangles = triangles, .threads = request_.threads};
   }
 
+  /// Work beside that of this thread, as decimation is single-threaded.
+  template <class Work>
+  auto beside(Work&& work) const {
+    return std::async(request_.threads > 1 ? std::launch::async : std::launch::deferred,
+                      std::forward<Work>(work));
+  }
+
   void find_tissue(const Progress& progress) {
     levels_ = tissue_levels(volume_, request_.source);
     head_ =
@@ -86,16 +116,16 @@ class CtSegmentation {
     if (request_.threshold_hu) options.threshold_hu = *request_.threshold_hu;
     bone_ =
         find_bone(volume_, levels_, head_, request_.source, options, part_of(progress, 0.3, 0.6));
-    // Side by side: decimation has one thread.
-    const bool has_skin = head_.has_outside && request_.face;
-    parallel_for(has_skin ? 2 : 1, request_.threads, [&](std::size_t i) {
-      if (i == 0)
-        whole_ = bone_surface(volume_, bone_, skull_label, surface_options(fitted_triangles),
-                              part_of(progress, 0.6, 1));
-      else
-        skin_ = skin_surface(volume_, levels_, head_, bone_.metal, request_.source,
-                             surface_options(request_.face_triangles));
+    const Progress of_surfaces = part_of(progress, 0.6, 1);
+    JointProgress joint(of_surfaces, 2);
+    auto skin = beside([&] {
+      if (!head_.has_outside || !request_.face) return ScanSurface{};
+      return skin_surface(volume_, levels_, head_, bone_.metal, request_.source,
+                          surface_options(request_.face_triangles), joint.of(1));
     });
+    whole_ =
+        bone_surface(volume_, bone_, skull_label, surface_options(fitted_triangles), joint.of(0));
+    skin_ = skin.get();
   }
 
   void fit_template(const Progress& progress) {
@@ -149,12 +179,15 @@ class CtSegmentation {
                           {upper_teeth_label, Role::upper_teeth, "upper-teeth", tooth_triangles},
                           {lower_teeth_label, Role::lower_teeth, "lower-teeth", tooth_triangles}};
     std::array<ScanSurface, std::size(all)> surfaces;
-    parallel_for(surfaces.size(), request_.threads, [&](std::size_t i) {
+    JointProgress joint(progress, surfaces.size());
+    const auto make = [&](std::size_t i) {
       SurfaceOptions options = surface_options(all[i].triangles);
       if (is_teeth(all[i].role)) options.least_piece_mm3 = least_tooth_mm3;
-      surfaces[i] = bone_surface(volume_, bone_, all[i].label, options,
-                                 i == 0 ? part_of(progress, 0, 1) : Progress{});
-    });
+      surfaces[i] = bone_surface(volume_, bone_, all[i].label, options, joint.of(i));
+    };
+    auto skull = beside([&] { make(0); });
+    for (std::size_t i = 1; i < surfaces.size(); ++i) make(i);
+    skull.get();
     for (std::size_t i = 0; i < surfaces.size(); ++i) {
       const Wanted& wanted = all[i];
       ScanSurface& surface = surfaces[i];

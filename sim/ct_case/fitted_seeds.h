@@ -7,10 +7,10 @@
 
 namespace condyle {
 
-/// The bones of a fitted template, with their teeth, as they give seeds.
+/// The bones of a fitted template, with their teeth, from which seeds are taken.
 struct FittedSeeds {
   std::vector<SeedSurface> surfaces;
-  double error_mm = 0;  // rms, of the fit; limited to the range that seed_labels() is known for
+  double error_mm = 0;  // the larger rms of both fits, clamped to the range that is measured
 };
 FittedSeeds fitted_seeds(const AnatomyFit& fit);
 
