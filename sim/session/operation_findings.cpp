@@ -4,10 +4,16 @@
 
 namespace condyle {
 
-OperationFindings find_in_operation(const Operated& operated) {
-  OperationFindings findings{.overlaps = segment_overlaps(operated)};
+OperationFindings find_in_grafts(const Operated& operated) {
+  OperationFindings findings;
   for (const GraftLayout& graft : operated.grafts)
     findings.grafts[graft.step.name] = graft_sentences(operated, graft);
+  return findings;
+}
+
+OperationFindings find_in_operation(const Operated& operated) {
+  OperationFindings findings = find_in_grafts(operated);
+  findings.overlaps = segment_overlaps(operated);
   return findings;
 }
 

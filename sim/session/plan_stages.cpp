@@ -30,14 +30,16 @@ PlanStages::Made PlanStages::pieces(const Plan& plan, Operated operated) const {
       {.folder = folder_,
        .scene = scene_without_contact(operate(prepared_, plan, std::move(operated))),
        .uncut = uncut_,
-       .operated = std::move(shared)});
+       .operated = shared,
+       .findings = find_in_grafts(*shared)});
 }
 
 PlanStages::Made PlanStages::with_contact(const SessionPatient& pieces, const Plan& plan,
                                           const SessionPatient& earlier,
                                           const Progress& progress) const {
-  report(progress, "measuring overlaps and grafts", 0);
-  OperationFindings findings = find_in_operation(*pieces.operated);
+  report(progress, "measuring overlaps", 0);
+  OperationFindings findings = pieces.findings;
+  findings.overlaps = segment_overlaps(*pieces.operated);
   return completed_patient(
       {.folder = folder_,
        .scene = scene_with_contact(operate(prepared_, plan, *pieces.operated), settings_,

@@ -24,7 +24,7 @@ class PlanStages {
   Operated replay(const Plan& plan);
   /// The planned patient whose bones pass through each other, without its face.
   Made pieces(const Plan& plan, Operated operated) const;
-  /// The same with contact and overlaps. `earlier`: a patient whose collision models are reused
+  /// The same with contact and all findings. `earlier`: a patient whose collision models are reused
   /// where the bone is the same. throws: InputError as make_scene().
   Made with_contact(const SessionPatient& pieces, const Plan& plan, const SessionPatient& earlier,
                     const Progress& progress = {}) const;

@@ -59,6 +59,32 @@ TEST(PlanStages, LeadToThePatientMadeAtOnce) {
   }
 }
 
+/// What is found on a graft is there with the pieces, and stays.
+TEST(PlanStages, KeepTheFindingsOnGrafts) {
+  const Case& head = test::builtin();
+  SimulatorSettings settings;
+  settings.tissue = false;
+  const auto loaded = make_session_patient(head, {}, settings, {});
+  PlanStages stages(*loaded, settings);
+  Plan plan =
+      with_step(empty_plan(head), CutStep{.osteotomy = "segmental_resection",
+                                          .parameters = {{"from_tooth", 44}, {"to_tooth", 47}},
+                                          .kerf_mm = 0.5,
+                                          .pieces = {"tumour"},
+                                          .below_margins = true});
+  plan = with_step(std::move(plan), ResectStep{"tumour"});
+  GraftStep graft;
+  graft.name = "fibula";
+  graft.replaces = "tumour";
+  graft.pieces = 1;
+  plan = with_step(std::move(plan), graft);
+  const auto pieces = stages.pieces(plan, stages.replay(plan));
+  const auto bones = stages.with_contact(*pieces, plan, *loaded);
+  ASSERT_EQ(pieces->findings.grafts.size(), 1u);
+  EXPECT_GT(pieces->findings.grafts.begin()->second.size(), 3u);
+  EXPECT_EQ(bones->findings.grafts, pieces->findings.grafts);
+}
+
 /// Undoing all of a plan gives the uncut patient back.
 TEST(PlanStages, OfAnEmptyPlanGiveTheUncutPatient) {
   const Case& head = test::builtin();
