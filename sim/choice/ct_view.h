@@ -68,7 +68,7 @@ struct CtView {
   // Of the volume that was read:
   std::vector<std::string> volume_notes = {};
   CtChoice first = {};           // before the user changes it
-  CtChoice chosen = {};          // as drawn
+  CtChoice chosen = {};          // its pictures may still be being drawn
   std::string seed_remark = {};  // on seeds that are not on bone
   double lowest_hu = -200, highest_hu = 2000;
   std::array<CtSliceView, 3> slices = {};      // axial, coronal, sagittal

@@ -242,10 +242,16 @@ void CtImport::show_pictures(CtPictures pictures) {
 
 bool CtImport::take_pictures() {
   if (!drawing_.done()) return false;
-  const auto pictures = drawing_.take();
-  if (!pictures || !view_) return false;
-  show_pictures(*pictures);
+  std::optional<CtPictures> pictures;
+  try {
+    pictures = drawing_.take();
+  } catch (...) {
+    draw(false, false);
+    throw;
+  }
   draw(false, false);
+  if (!pictures) return false;
+  show_pictures(std::move(*pictures));
   return true;
 }
 

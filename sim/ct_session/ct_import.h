@@ -29,7 +29,7 @@ struct ReadScan {
   std::shared_ptr<const SolidScan> solid;
 };
 
-/// Pictures of a volume; absent: as they were.
+/// New pictures of a volume; absent ones have not changed.
 struct CtPictures {
   std::optional<std::array<CtSliceView, 3>> slices;
   std::shared_ptr<const CtPixels> solid;
@@ -108,7 +108,7 @@ class CtImport {
   std::shared_ptr<const CtView> view_;
   Job<Done> job_;
   Job<CtPictures> drawing_;
-  bool slices_due_ = false, solid_due_ = false;  // when the pictures being drawn are done
+  bool slices_due_ = false, solid_due_ = false;  // to be drawn after the present drawing
 };
 
 }  // namespace condyle

@@ -113,12 +113,23 @@ TEST_F(CtImports, ListsReadsAndShowsASeries) {
   import_.choose(choice);
   choice.cross.z() += 20;
   import_.choose(choice);
+  const auto solid = view().solid;
   draw();
   EXPECT_EQ(view().slices[0].number, before.slices[0].number + 12);
+  EXPECT_NE(view().solid, solid);
   choice.threshold_hu = 900;
   import_.choose(choice);
   draw();
   EXPECT_NE(view().slices[1].picture->rgba, before.slices[1].picture->rgba);
+
+  // Pictures that are being drawn are not shown of a series that is read again.
+  choice.cross.z() -= 40;
+  import_.choose(choice);
+  import_.read(1);
+  EXPECT_FALSE(import_.drawing());
+  finish();
+  EXPECT_EQ(view().slices[0].number, before.slices[0].number);
+  EXPECT_EQ(view().slices[0].picture->rgba, before.slices[0].picture->rgba);
 }
 
 TEST_F(CtImports, SeedsMustBeOnBoneAndTheFolderNew) {
