@@ -387,11 +387,11 @@ void Window::State::draw(bool always, Image* copy) {
     glClear(GL_COLOR_BUFFER_BIT);
     ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
   });
-  if (copy) *copy = read_back();
-  if (save_window) {
-    save_window = false;
-    render_thread->save(read_back(), options.picture_folder);
-  }
+  pacing.draw([&] {
+    if (copy) *copy = read_back();
+    if (std::exchange(save_window, false))
+      render_thread->save(read_back(), options.picture_folder);
+  });
   pacing.draw([&] { glfwSwapBuffers(window); });
   pacing.frames_due = std::max(0, pacing.frames_due - 1);
 }

@@ -36,13 +36,13 @@ class WindowSession : public testing::Test {
       if (entry.path().filename().string().starts_with(test_name() + "-")) fs::remove(entry.path());
   }
   void TearDown() override {
-    report_time_away();
     if (program_ > 0) {
       kill(program_, SIGKILL);
       waitpid(program_, nullptr, 0);
     }
     unsetenv("XDG_CONFIG_HOME");
     unsetenv("XDG_STATE_HOME");
+    report_time_away();
   }
   /// The interface thread leaves all long work to other threads. On an idle machine it is away from
   /// mouse and keyboard for less than 0.1 s, on a shared one longer.

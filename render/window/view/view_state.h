@@ -195,7 +195,7 @@ struct PictureStatistics {
   bool finished = false;  // it shows all that is requested, in full quality
   // Longest time between two readings of mouse and keyboard, without waiting for them.
   double longest_away_ms = 0;
-  double longest_work_ms = 0;  // of them, without the time in OpenGL
+  double longest_work_ms = 0;  // longest such time less its time in OpenGL
   double render_scale = 1;     // 1 is full resolution
   int samples = 1;             // of multisampling
 };
