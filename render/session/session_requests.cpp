@@ -139,7 +139,7 @@ void ViewSession::carry_out(const Request& request) {
         dialog_.show(asked);
       },
       [&](const request::ReadSeries& series) {
-        ct_.read(series.number);
+        ct_.read(series.number, series.interpolate);
         show_ct();
       },
       [&](const request::ShowCt& shown) {

@@ -17,6 +17,7 @@ struct CtSeriesItem {
   std::string facts;                      // "CT, 210 slices of 512 x 512, ..."
   std::vector<std::string> remarks = {};  // what was corrected, why it is refused
   bool readable = false;
+  bool uneven = false;  // readable once its slices are interpolated
 };
 
 /// A point that the user has set in a bone, mm.

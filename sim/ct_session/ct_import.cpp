@@ -167,34 +167,34 @@ void CtImport::open(const fs::path& scan) {
   });
 }
 
-void CtImport::read(int series) {
+void CtImport::read(int series, bool interpolate) {
   if (!view_ || making() || !folder_) return;
   const auto known = std::find_if(view_->series.begin(), view_->series.end(),
                                   [&](const CtSeriesItem& one) { return one.number == series; });
-  if (known != view_->series.end()) start_reading(series);
+  if (known != view_->series.end()) start_reading(series, interpolate);
 }
 
-void CtImport::start_reading(int series) {
+void CtImport::start_reading(int series, bool interpolate) {
   scan_.reset();
   stop_drawing();
   show([](CtView& view) { view.stage = CtStage::reading; });
-  job_.start(
-      [path = path_, folder = folder_, series, threads = threads_](const Progress& progress) {
-        report(progress, "reading the scan", 0);
-        const Progress reading = [&](std::string_view, double fraction) {
-          report(progress, "reading the scan", 0.8 * fraction);
-        };
-        const CtRequest request{.series = series, .threads = threads};
-        auto scan = std::make_shared<ReadScan>();
-        scan->ct = folder ? folder->read(request, reading) : ct_volume(path, request, reading);
-        report(progress, "reading the scan", 0.8);
-        scan->levels = tissue_levels(scan->ct.volume, path.string());
-        scan->solid =
-            std::make_shared<const SolidScan>(scan->ct.volume, scan->levels.low_bone(), threads);
-        report(progress, "drawing the slices", 0.95);
-        CtPictures pictures = pictures_of(*scan, first_choice(*scan), true, true, threads);
-        return Done{.folder = {}, .scan = std::move(scan), .pictures = std::move(pictures)};
-      });
+  job_.start([path = path_, folder = folder_, series, interpolate,
+              threads = threads_](const Progress& progress) {
+    report(progress, "reading the scan", 0);
+    const Progress reading = [&](std::string_view, double fraction) {
+      report(progress, "reading the scan", 0.8 * fraction);
+    };
+    const CtRequest request{.series = series, .resample = interpolate, .threads = threads};
+    auto scan = std::make_shared<ReadScan>();
+    scan->ct = folder ? folder->read(request, reading) : ct_volume(path, request, reading);
+    report(progress, "reading the scan", 0.8);
+    scan->levels = tissue_levels(scan->ct.volume, path.string());
+    scan->solid =
+        std::make_shared<const SolidScan>(scan->ct.volume, scan->levels.low_bone(), threads);
+    report(progress, "drawing the slices", 0.95);
+    CtPictures pictures = pictures_of(*scan, first_choice(*scan), true, true, threads);
+    return Done{.folder = {}, .scan = std::move(scan), .pictures = std::move(pictures)};
+  });
 }
 
 void CtImport::list_series(const CtFolder& folder) {
@@ -204,7 +204,8 @@ void CtImport::list_series(const CtFolder& folder) {
     for (const CtSeries& one : folder.series()) {
       CtSeriesItem item{one.number, series_facts(one), one.notes, one.readable(false)};
       for (const std::string& problem : one.problems) item.remarks.push_back("refused: " + problem);
-      if (!one.uneven.empty()) item.remarks.push_back("refused: " + one.uneven);
+      if (!one.uneven.empty()) item.remarks.push_back("uneven: " + one.uneven);
+      item.uneven = one.readable(true) && !one.readable(false);
       view.series.push_back(std::move(item));
     }
     try {

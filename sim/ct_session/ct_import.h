@@ -55,8 +55,9 @@ class CtImport {
 
   /// Lists the series of a folder, or reads the volume of a file.
   void open(const std::filesystem::path& scan);
-  /// Reads a series of the list, by its number.
-  void read(int series);
+  /// Reads a series of the list, by its number. `interpolate`: slices that are missing or uneven,
+  /// for which it is refused otherwise.
+  void read(int series, bool interpolate = false);
   /// What the user has chosen; its pictures follow. Nothing without a volume.
   void choose(const CtChoice& choice);
   /// The patient as chosen, for make_ct_patient(); the view waits for it. throws: InputError for a
@@ -90,7 +91,7 @@ class CtImport {
   const Job<Done>& job() const { return job_; }
 
  private:
-  void start_reading(int series);
+  void start_reading(int series, bool interpolate = false);
   void show(const std::function<void(CtView&)>& edit);
   void list_series(const CtFolder& folder);
   void show_scan(const Done& read);

@@ -157,11 +157,20 @@ TEST_F(WindowCt, AScanIsNamedOnTheCommandLineOrChosenInTheDialog) {
   start({folder_ / "head.nrrd"});
   ASSERT_TRUE(wait_for_stage("slices"));
   see("file");
-  // Another one in its place.
+  // Another one in its place, which lacks a slice: it is read once its slices may be interpolated.
+  std::vector<fs::path> slices;
+  for (const auto& entry : fs::directory_iterator(fs::path(folder_ / "scan") / marker))
+    slices.push_back(entry.path());
+  std::sort(slices.begin(), slices.end());
+  fs::remove(slices[slices.size() / 2]);
   EXPECT_TRUE(press("ctrl+o"));
   write_into("open-path", fs::path(folder_ / "scan") / marker);
   click("open:scan");
   ASSERT_TRUE(wait_for_stage("series"));
+  click("ct-series:1");
+  see("uneven");
+  click("ct-read");
+  ASSERT_TRUE(wait_for_stage("slices"));
   click("ct-close");
   EXPECT_TRUE(wait_until([](const Json& s) { return !s.contains("ct"); }));
   EXPECT_TRUE(wait_for_item("open-files"));

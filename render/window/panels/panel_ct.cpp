@@ -75,12 +75,13 @@ void Panels::Drawing::ct_series(float high) {
     const bool best = static_cast<int>(i) == ct.best;
     const std::string words =
         fmt::format("{}  {}{}", one.number, one.facts, best ? "  (best)" : "");
-    ImGui::BeginDisabled(!one.readable);
+    ImGui::BeginDisabled(!one.readable && !one.uneven);
     if (select_row(fitted(theme.regular, words, ImGui::GetContentRegionAvail().x) + "##ct" +
                        std::to_string(one.number),
                    one.number == form.series)) {
       form.series = one.number;
-      if (ImGui::IsMouseDoubleClicked(0)) panels.request(request::ReadSeries{one.number});
+      if (ImGui::IsMouseDoubleClicked(0) && one.readable)
+        panels.request(request::ReadSeries{one.number});
     }
     pen.mark(fmt::format("ct-series:{}", one.number), words);
     ImGui::EndDisabled();
@@ -89,7 +90,9 @@ void Panels::Drawing::ct_series(float high) {
   }
   ImGui::EndDisabled();
   for (const std::string& note : ct.notes) wrapped(theme.small, palette().text_dim, note);
-  if (!ct.no_best.empty()) wrapped(theme.small, palette().warning, ct.no_best);
+  // Of a single series its own remarks say why.
+  if (!ct.no_best.empty() && ct.series.size() != 1)
+    wrapped(theme.small, palette().warning, ct.no_best);
   ImGui::EndChild();
   ImGui::PopStyleColor();
 }
@@ -171,18 +174,23 @@ void Panels::Drawing::ct_making() {
   const float whole = ImGui::GetContentRegionAvail().x;
   if (!slices) {
     ImGui::SetCursorPosY(ImGui::GetWindowContentRegionMax().y - row);
-    ImGui::SetCursorPosX(ImGui::GetWindowContentRegionMax().x - 2 * pen.px(130) - gap);
+    const auto chosen = std::find_if(ct.series.begin(), ct.series.end(), [&](const auto& one) {
+      return one.number == form.series && (one.readable || one.uneven);
+    });
+    const bool uneven = chosen != ct.series.end() && !chosen->readable;
+    const float wide = pen.px(uneven ? 220 : 130);
+    ImGui::SetCursorPosX(ImGui::GetWindowContentRegionMax().x - pen.px(130) - wide - gap);
     if (word_button(pen, "ct-close", "Close the CT", {pen.px(130), row}, false))
       panels.request(request::CloseCt{});
     ImGui::SameLine(0, gap);
-    const bool can_read =
-        ct.stage == CtStage::series &&
-        std::any_of(ct.series.begin(), ct.series.end(), [&](const CtSeriesItem& one) {
-          return one.number == form.series && one.readable;
-        });
-    ImGui::BeginDisabled(!can_read);
-    if (word_button(pen, "ct-read", "Read the series", {pen.px(130), row}, true))
-      panels.request(request::ReadSeries{form.series});
+    ImGui::BeginDisabled(ct.stage != CtStage::series || chosen == ct.series.end());
+    if (word_button(pen, "ct-read", uneven ? "Interpolate slices and read" : "Read the series",
+                    {wide, row}, true))
+      panels.request(request::ReadSeries{form.series, uneven});
+    if (uneven)
+      tooltip(pen,
+              "Slices are missing or uneven: all are interpolated at the usual step between "
+              "slices. Anatomy in a gap is a guess");
     ImGui::EndDisabled();
     return;
   }

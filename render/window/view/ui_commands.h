@@ -115,6 +115,7 @@ struct Browse {
 /// Reads a series of the CT that is imported.
 struct ReadSeries {
   int number = 0;
+  bool interpolate = false;  // slices that are missing or uneven
 };
 /// Shows what was chosen of the CT; of successive ones the last counts.
 struct ShowCt {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -163,6 +164,28 @@ TEST_F(CtImports, SeedsMustBeOnBoneAndTheFolderNew) {
   import_.end_making();
   EXPECT_EQ(view().stage, CtStage::slices);
   EXPECT_EQ(import_.choice(), choice) << "what was chosen stays";
+}
+
+TEST_F(CtImports, AnUnevenSeriesIsReadOnceItsSlicesMayBeInterpolated) {
+  std::vector<fs::path> slices;
+  for (const auto& entry : fs::directory_iterator(folder_ / "ct")) slices.push_back(entry.path());
+  std::sort(slices.begin(), slices.end());
+  fs::remove(slices[slices.size() / 2]);
+  import_.open(folder_ / "ct");
+  finish();
+  ASSERT_EQ(view().series.size(), 1u);
+  EXPECT_FALSE(view().series[0].readable);
+  EXPECT_TRUE(view().series[0].uneven);
+  ASSERT_EQ(view().series[0].remarks.size(), 1u);
+  EXPECT_EQ(view().series[0].remarks[0].find("uneven: "), 0u) << view().series[0].remarks[0];
+  import_.read(1);
+  EXPECT_THROW(finish(), InputError);
+  EXPECT_EQ(view().stage, CtStage::series);
+  import_.read(1, true);
+  finish();
+  ASSERT_EQ(view().stage, CtStage::slices);
+  EXPECT_EQ(view().slices[0].count, static_cast<int>(slices.size()));
+  EXPECT_FALSE(view().volume_notes.empty());
 }
 
 TEST_F(CtImports, AVolumeOfAirIsRefusedAndTheListStays) {
