@@ -8,6 +8,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/parallel.h"
+#include "engine/segmentation/marrow.h"
 #include "engine/segmentation/metal_streaks.h"
 #include "engine/segmentation/voxel_pieces.h"
 #include "engine/volume/blur.h"
@@ -16,10 +17,6 @@ namespace condyle {
 namespace {
 
 constexpr double blur_voxels = 0.6;
-constexpr double air_in_cavity_hu = -200;  // a cavity with a lower mean holds air, not marrow
-constexpr double largest_marrow_mm3 = 50000;
-constexpr double largest_cut_marrow_mm3 = 5000;  // of marrow that the end of the scan cuts open
-constexpr double smallest_cavity_mm3 = 60;       // smaller ones are noise, or metal out of range
 constexpr std::int16_t beyond_hu = -1024;
 
 /// Voxels around the cells of the head that are brighter on average than soft tissue.
@@ -67,16 +64,6 @@ void mark_bright(const HeadRegion& head, BoneVoxels& bone, int threads) {
   });
 }
 
-/// Calls change(first voxel, run) for each run.
-template <class Change>
-void for_runs(const VoxelPieces& pieces, int row_size, const Change& change) {
-  for (std::size_t row = 0; row + 1 < pieces.row_start.size(); ++row)
-    for (std::size_t r = pieces.row_start[row]; r < pieces.row_start[row + 1]; ++r)
-      change(
-          row * static_cast<std::size_t>(row_size) + static_cast<std::size_t>(pieces.runs[r].first),
-          pieces.runs[r]);
-}
-
 /// Gives small pieces of bone the label of what is no bone. Returns the number of voxels kept.
 std::size_t drop_specks(BoneVoxels& bone, double least_voxels) {
   const VoxelPieces pieces = find_pieces(bone.label, bone.box.size, 1, Connectivity::corners);
@@ -89,47 +76,6 @@ std::size_t drop_specks(BoneVoxels& bone, double least_voxels) {
       std::fill_n(bone.label.begin() + static_cast<std::ptrdiff_t>(q), length, other_bone);
   });
   return kept;
-}
-
-/// Fills marrow that bone encloses, or bone and the end of the scan: its walls are no surface of
-/// the bone.
-void fill_marrow(const VoxelBox& inside, double voxel_mm3, BoneVoxels& bone) {
-  // A cavity at the end of the scan ends there: it is not joined with the outside.
-  std::vector<VoxelLabel> within(inside.count());
-  const auto place = [&](int i, int j, int k) {
-    return bone.box.index(inside.low[0] - bone.box.low[0] + i, inside.low[1] - bone.box.low[1] + j,
-                          inside.low[2] - bone.box.low[2] + k);
-  };
-  for (int k = 0; k < inside.size[2]; ++k)
-    for (int j = 0; j < inside.size[1]; ++j)
-      std::copy_n(bone.label.data() + place(0, j, k), inside.size[0],
-                  within.data() + inside.index(0, j, k));
-  const VoxelPieces pieces = find_pieces(within, inside.size, no_bone, Connectivity::faces);
-  const auto for_voxels = [&](const auto& visit) {
-    for_runs(pieces, inside.size[0], [&](std::size_t q, const VoxelRun& run) {
-      const auto row = static_cast<int>(q / static_cast<std::size_t>(inside.size[0]));
-      const std::size_t at = place(run.first, row % inside.size[1], row / inside.size[1]);
-      for (int i = 0; i <= run.last - run.first; ++i)
-        visit(static_cast<std::size_t>(run.piece), at + static_cast<std::size_t>(i));
-    });
-  };
-  std::vector<double> sum(pieces.voxels.size(), 0);
-  for_voxels([&](std::size_t piece, std::size_t at) { sum[piece] += bone.smooth[at]; });
-  std::vector<std::uint8_t> filled(pieces.voxels.size(), 0);
-  for (std::size_t piece = 0; piece < filled.size(); ++piece) {
-    const auto voxels = static_cast<double>(pieces.voxels[piece]);
-    const double mm3 = voxels * voxel_mm3;
-    const bool holds_air = sum[piece] < air_in_cavity_hu * voxels;
-    filled[piece] =
-        mm3 <= (pieces.at_border[piece] ? largest_cut_marrow_mm3 : largest_marrow_mm3) &&
-        (!holds_air || (mm3 <= smallest_cavity_mm3 && !pieces.at_border[piece]));
-  }
-  const auto bright = static_cast<std::int16_t>(std::ceil(bone.threshold_hu) + 1);
-  for_voxels([&](std::size_t piece, std::size_t at) {
-    if (!filled[piece]) return;
-    bone.label[at] = 1;
-    bone.smooth[at] = std::max(bone.smooth[at], bright);
-  });
 }
 
 }  // namespace
@@ -155,7 +101,7 @@ BoneVoxels find_bone(const Volume& volume, const TissueLevels& levels, const Hea
   const double voxel_mm3 = volume.spacing_mm.prod();
   if (drop_specks(bone, options.least_piece_mm3 / voxel_mm3) == 0) throw none();
   report(progress, "finding bone", 0.8);
-  fill_marrow(bone.box.within(whole_box(volume)), voxel_mm3, bone);
+  fill_marrow(volume, options.threads, bone);
   report(progress, "finding bone", 1);
   return bone;
 }

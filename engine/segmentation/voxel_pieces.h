@@ -27,4 +27,14 @@ enum class Connectivity { faces, corners };
 VoxelPieces find_pieces(const std::vector<std::uint8_t>& mask, const std::array<int, 3>& size,
                         std::uint8_t value, Connectivity connectivity);
 
+/// Calls change(first voxel, run) for each run.
+template <class Change>
+void for_runs(const VoxelPieces& pieces, int row_size, const Change& change) {
+  for (std::size_t row = 0; row + 1 < pieces.row_start.size(); ++row)
+    for (std::size_t r = pieces.row_start[row]; r < pieces.row_start[row + 1]; ++r)
+      change(
+          row * static_cast<std::size_t>(row_size) + static_cast<std::size_t>(pieces.runs[r].first),
+          pieces.runs[r]);
+}
+
 }  // namespace condyle
