@@ -39,8 +39,7 @@ struct BoneOptions {
 };
 
 /// Bone of the head: thin bone keeps its walls, specks, streaks, table and head rest are left out,
-/// marrow is filled. `name`: the scan in messages. throws: InputError when there
-/// is none.
+/// marrow is filled. `name`: the scan in messages. throws: InputError when there is none.
 BoneVoxels find_bone(const Volume& volume, const TissueLevels& levels, const HeadRegion& head,
                      const std::string& name, const BoneOptions& options = {},
                      const Progress& progress = {});
