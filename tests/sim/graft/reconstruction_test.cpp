@@ -1,4 +1,6 @@
 // A segment of the built-in jaw is resected, and a fibula takes its place.
+#include "tests/support/reconstruction.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,28 +19,12 @@
 
 using namespace condyle;
 using condyle::test::builtin;
+using condyle::test::fibula_graft;
 
 namespace {
 
 Plan resected(int from_tooth = 34, int to_tooth = 37) {
-  Plan plan;
-  plan.name = "reconstruction";
-  plan.geometry = geometry_of(builtin());
-  CutStep cut{.osteotomy = "segmental_resection",
-              .parameters = {{"from_tooth", from_tooth}, {"to_tooth", to_tooth}},
-              .kerf_mm = 0.5,
-              .pieces = {"tumour"},
-              .below_margins = true};
-  plan = with_step(std::move(plan), cut);
-  return with_step(std::move(plan), ResectStep{"tumour"});
-}
-
-GraftStep fibula(int pieces) {
-  GraftStep step;
-  step.name = "fibula";
-  step.replaces = "tumour";
-  step.pieces = pieces;
-  return step;
+  return condyle::test::resection_plan(builtin(), from_tooth, to_tooth);
 }
 
 TEST(Reconstruction, removes_the_segment_with_its_teeth_and_leaves_two_hosts) {
@@ -134,7 +120,7 @@ TEST(Reconstruction, keeps_own_zones_and_drops_attachments_of_resected_bone) {
 TEST(Reconstruction, follows_the_border_around_the_chin) {
   // Planes near one face of these defects meet the other limb, too.
   for (const auto& [from, to] : {std::pair{44, 36}, std::pair{43, 37}, std::pair{45, 36}}) {
-    const Operated operated = apply_plan(builtin(), with_step(resected(from, to), fibula(3)));
+    const Operated operated = apply_plan(builtin(), with_step(resected(from, to), fibula_graft(3)));
     ASSERT_TRUE(operated.problems.empty()) << operated.problems[0];
     const GraftLayout& graft = operated.grafts.at(0);
     for (const int i : {0, 1}) {
@@ -149,7 +135,7 @@ TEST(Reconstruction, follows_the_border_around_the_chin) {
 }
 
 TEST(Reconstruction, lays_pieces_that_meet_the_jaw_and_each_other) {
-  const Plan plan = with_step(resected(), fibula(2));
+  const Plan plan = with_step(resected(), fibula_graft(2));
   const Operated operated = apply_plan(builtin(), plan);
   ASSERT_TRUE(operated.problems.empty()) << operated.problems[0];
   ASSERT_EQ(operated.grafts.size(), 1u);
@@ -178,7 +164,7 @@ TEST(Reconstruction, lays_pieces_that_meet_the_jaw_and_each_other) {
 }
 
 TEST(Reconstruction, reports_the_gap_where_a_piece_is_moved_away) {
-  Plan plan = with_step(resected(), fibula(1));
+  Plan plan = with_step(resected(), fibula_graft(1));
   const GraftLayout graft = apply_plan(builtin(), plan).grafts[0];
   const Pose shift{Eigen::Quaterniond::Identity(), 1.6 * graft.defect.faces[0].normal};
   plan = with_step(std::move(plan), MoveStep{.segment = "fibula", .move = ExplicitMove{shift}});
@@ -192,7 +178,7 @@ TEST(Reconstruction, reports_the_gap_where_a_piece_is_moved_away) {
 
 TEST(Reconstruction, warns_where_the_gap_is_one_at_which_bone_does_not_unite) {
   using Level = GraftFaceReport::Level;
-  const Plan plan = with_step(resected(), fibula(1));
+  const Plan plan = with_step(resected(), fibula_graft(1));
   const GraftLayout graft = apply_plan(builtin(), plan).grafts[0];
   for (const auto& [shift_mm, level, words] :
        {std::tuple(2.8, Level::very_wide, "bone is not expected to unite"),
@@ -209,7 +195,7 @@ TEST(Reconstruction, warns_where_the_gap_is_one_at_which_bone_does_not_unite) {
 }
 
 TEST(Reconstruction, is_read_back_from_its_file_and_needs_its_resection) {
-  GraftStep step = fibula(3);
+  GraftStep step = fibula_graft(3);
   step.curve = {{1, 2, 3.25}, {4, 5, 6}, {7, 8, 9}};
   step.height_mm = 8.5;
   step.starts_mm = {70, 100, 130};

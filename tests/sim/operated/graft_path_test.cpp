@@ -8,6 +8,7 @@
 #include "sim/operated/operated_scene.h"
 #include "tests/support/boxes.h"
 #include "tests/support/builtin.h"
+#include "tests/support/reconstruction.h"
 
 namespace condyle {
 namespace {
@@ -16,18 +17,7 @@ using Eigen::Vector3d;
 
 /// The jaw from the right canine to the left first molar replaced by a fibula in three pieces.
 Plan fibula_plan() {
-  Plan plan{.name = "fibula", .geometry = geometry_of(test::builtin())};
-  plan = with_step(std::move(plan), CutStep{.osteotomy = "segmental_resection",
-                                            .parameters = {{"from_tooth", 43}, {"to_tooth", 36}},
-                                            .kerf_mm = 0.5,
-                                            .pieces = {"tumour"},
-                                            .below_margins = true});
-  plan = with_step(std::move(plan), ResectStep{"tumour"});
-  GraftStep graft;
-  graft.name = "fibula";
-  graft.replaces = "tumour";
-  graft.pieces = 3;
-  return with_step(std::move(plan), graft);
+  return with_step(test::resection_plan(test::builtin(), 43, 36), test::fibula_graft(3));
 }
 
 const OperatedPatient& operated() {

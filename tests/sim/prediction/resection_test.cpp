@@ -11,21 +11,12 @@
 #include "sim/prediction/predictor.h"
 #include "sim/tissue/model.h"
 #include "tests/support/builtin.h"
+#include "tests/support/reconstruction.h"
 
 namespace condyle {
 namespace {
 
 using Eigen::Vector3d;
-
-Plan resected(const Case& patient) {
-  Plan plan{.name = "reconstruction", .geometry = geometry_of(patient)};
-  plan = with_step(plan, CutStep{.osteotomy = "segmental_resection",
-                                 .parameters = {{"from_tooth", 34}, {"to_tooth", 37}},
-                                 .kerf_mm = 0.5,
-                                 .pieces = {"tumour"},
-                                 .below_margins = true});
-  return with_step(plan, ResectStep{"tumour"});
-}
 
 /// Largest displacement of the face to the left within a distance of a point at rest.
 double most_to_the_left(const Prediction& prediction, const Vector3d& near, double within_mm) {
@@ -38,7 +29,7 @@ double most_to_the_left(const Prediction& prediction, const Vector3d& near, doub
 
 TEST(Resection, HoldsNoTissueWhereTheBoneWas) {
   const Case& patient = test::builtin();
-  const Prediction prediction = predict(patient, resected(patient));
+  const Prediction prediction = predict(patient, test::resection_plan(patient));
   ASSERT_EQ(prediction.operated.resections.size(), 1U);
   EXPECT_EQ(prediction.before, prediction.after) << "nothing presses and nothing moves";
   EXPECT_GT(prediction.stripping.resected, 10);
@@ -62,8 +53,8 @@ TEST(Resection, HoldsNoTissueWhereTheBoneWas) {
 /// A graft within the outline of the bone leaves the face; one that protrudes pushes the skin.
 TEST(Resection, AGraftThatProtrudesPushesTheSkin) {
   const Case& patient = test::builtin();
-  GraftStep graft{.name = "fibula", .replaces = "tumour"};
-  const Plan plan = resected(patient);
+  GraftStep graft = test::fibula_graft(1);
+  const Plan plan = test::resection_plan(patient);
   Predictor predictor(patient);
   const Prediction inside = predictor.predict(with_step(plan, graft));
   ASSERT_EQ(inside.operated.grafts.size(), 1U);

@@ -7,6 +7,7 @@
 
 #include "sim/frame/state_hash.h"
 #include "tests/support/builtin.h"
+#include "tests/support/reconstruction.h"
 
 namespace condyle {
 namespace {
@@ -66,18 +67,7 @@ TEST(PlanStages, KeepTheFindingsOnGrafts) {
   settings.tissue = false;
   const auto loaded = make_session_patient(head, {}, settings, {});
   PlanStages stages(*loaded, settings);
-  Plan plan =
-      with_step(empty_plan(head), CutStep{.osteotomy = "segmental_resection",
-                                          .parameters = {{"from_tooth", 44}, {"to_tooth", 47}},
-                                          .kerf_mm = 0.5,
-                                          .pieces = {"tumour"},
-                                          .below_margins = true});
-  plan = with_step(std::move(plan), ResectStep{"tumour"});
-  GraftStep graft;
-  graft.name = "fibula";
-  graft.replaces = "tumour";
-  graft.pieces = 1;
-  plan = with_step(std::move(plan), graft);
+  const Plan plan = with_step(test::resection_plan(head, 44, 47), test::fibula_graft(1));
   const auto pieces = stages.pieces(plan, stages.replay(plan));
   const auto bones = stages.with_contact(*pieces, plan, *loaded);
   ASSERT_EQ(pieces->findings.grafts.size(), 1u);
