@@ -167,19 +167,10 @@ class ImportBench {
     decimated.push_back(skin_surface(volume, levels, region, bone.metal, "scan",
                                      {.target_triangles = 200000, .threads = common_.threads}));
     const double seconds = watch.wall_ms() / 1000, peak = peak_mb();
-    results_.push_back({{"name", "import.time"},
-                        {"template", "given"},
-                        {"median", seconds},
-                        {"p95", seconds},
-                        {"unit", "s"},
-                        {"goal", 60},
-                        {"cpu_median", watch.cpu_ms() / 1000},
-                        {"segmentation_s", split_s},
-                        {"peak_mb", peak},
-                        {"peak_goal_mb", 2048},
-                        {"size", volume.size},
-                        {"surfaces", surfaces_json(decimated)},
-                        {"threads", common_.threads}});
+    Json row = time_row("given", seconds, 60, watch.cpu_ms() / 1000, peak, volume);
+    row["segmentation_s"] = split_s;
+    row["surfaces"] = surfaces_json(decimated);
+    results_.push_back(std::move(row));
     if (!common_.quiet)
       fmt::print(stderr,
                  "  import.time   512 x 512 x 300: {:.1f} s (goal 60; processor {:.1f} s, split "
@@ -192,18 +183,9 @@ class ImportBench {
     const Stopwatch watch;
     const CtCase made = case_of_ct(volume, patient_, {.name = "scan", .threads = common_.threads});
     const double seconds = watch.wall_ms() / 1000, peak = peak_mb();
-    results_.push_back({{"name", "import.time"},
-                        {"template", "fitted"},
-                        {"median", seconds},
-                        {"p95", seconds},
-                        {"unit", "s"},
-                        {"goal", 90},
-                        {"cpu_median", watch.cpu_ms() / 1000},
-                        {"peak_mb", peak},
-                        {"peak_goal_mb", 2048},
-                        {"size", volume.size},
-                        {"parts", made.patient.parts.size()},
-                        {"threads", common_.threads}});
+    Json row = time_row("fitted", seconds, 90, watch.cpu_ms() / 1000, peak, volume);
+    row["parts"] = made.patient.parts.size();
+    results_.push_back(std::move(row));
     if (!common_.quiet)
       fmt::print(
           stderr,
@@ -262,6 +244,20 @@ class ImportBench {
     }
   }
 
+  Json time_row(const char* seeds, double seconds, double goal, double cpu_s, double peak,
+                const Volume& volume) const {
+    return {{"name", "import.time"},
+            {"template", seeds},
+            {"median", seconds},
+            {"p95", seconds},
+            {"unit", "s"},
+            {"goal", goal},
+            {"cpu_median", cpu_s},
+            {"peak_mb", peak},
+            {"peak_goal_mb", 2048},
+            {"size", volume.size},
+            {"threads", common_.threads}};
+  }
   static Json surfaces_json(const std::vector<ScanSurface>& surfaces) {
     Json all = Json::array();
     for (const ScanSurface& surface : surfaces)
