@@ -43,8 +43,7 @@ constexpr ParameterRow parameter_rows[] = {
     {"disc_gap", "mm", 0.05, 8, "Condyle to fossa when seated (as in the patient)",
      &MotionParameters::disc_gap_mm},
     {"disc_gap_front", "mm", 0.05, 8,
-     "Condyle to fossa on the slope of the eminence (1.3 where the patient's joint is known, "
-     "else as when seated)",
+     "Condyle to fossa on the slope of the eminence (1.3, or as when seated where that is less)",
      &MotionParameters::disc_gap_front_mm},
     {"bonwill", "mm", 60, 150,
      "Bonwill distance, condyle to incisors: places the condyles as in an articulator",

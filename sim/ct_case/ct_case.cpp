@@ -17,6 +17,7 @@
 #include "sim/case/tooth_labels.h"
 #include "sim/ct_case/fitted_seeds.h"
 #include "sim/ct_case/tooth_voxels.h"
+#include "sim/motion/condylar_path_table.h"
 #include "sim/motion/joint_surfaces.h"
 
 namespace condyle {
@@ -256,9 +257,10 @@ class CtSegmentation {
     if (!joints) return;
     const double gap_mm = joints->rest_gap_mm();
     if (gap_mm >= std::min(least_disc_mm, volume_.spacing_mm.maxCoeff())) return;
-    // The wider joint shows more of its disc, and keeps it.
-    const double disc_mm = std::max(
-        {least_disc_mm, joints->rest_gap_mm(JawSide::left), joints->rest_gap_mm(JawSide::right)});
+    // The wider joint shows more of its disc.
+    const double wider_mm =
+        std::max(joints->rest_gap_mm(JawSide::left), joints->rest_gap_mm(JawSide::right));
+    const double disc_mm = std::clamp(wider_mm, least_disc_mm, usual_front_gap_mm);
     patient().motion.disc_gap_front_mm = disc_mm;
     patient().notes.push_back(
         fmt::format("the scan shows a gap of {:.1f} mm in a joint, less than a voxel: the discs "

@@ -8,9 +8,13 @@
 
 namespace condyle {
 
+/// Usual joint space in front of the condyle, where the disc is thinnest; source: Ikeda and
+/// Kawamura 2013.
+constexpr double usual_front_gap_mm = 1.3;
+
 /// Thickness of the disc between condyle and fossa: seated, and on the slope of the eminence.
 struct DiscGap {
-  double seated_mm = 2.5, front_mm = 1.3;
+  double seated_mm = 2.5, front_mm = usual_front_gap_mm;
   double at(double forward_mm) const;
 };
 

@@ -16,7 +16,6 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double default_bennett_deg = 7.5, default_side_shift_mm = 0.3;
-constexpr double known_joint_front_gap_mm = 1.3;
 constexpr double side_shift_length_mm = 1;
 
 Vector3d needed(const Case& patient, const char* name) {
@@ -83,17 +82,15 @@ JawJoints::JawJoints(const Case& patient, const MotionParameters& parameters, Jo
       joint.path = inclined_path(*inclination, parameters.path_shape.value_or(1));
       given = true;
     } else if (surfaces_) {
-      const double rest = surfaces_->rest_gap_mm(which);
-      DiscGap gap{parameters.disc_gap_mm.value_or(rest), 0};
-      gap.front_mm = parameters.disc_gap_front_mm.value_or(
-          patient.condylar_path ? std::min(gap.seated_mm, known_joint_front_gap_mm)
-                                : gap.seated_mm);
+      joint.gap.seated_mm = parameters.disc_gap_mm.value_or(surfaces_->rest_gap_mm(which));
+      joint.gap.front_mm =
+          parameters.disc_gap_front_mm.value_or(std::min(joint.gap.seated_mm, usual_front_gap_mm));
       const double widest =
           reach == JointReach::aside ? 0.5 + side_shift_mm_ + 14 * bennett_slope_ : 0;
       joint.table.emplace(*surfaces_, which,
                           CondylarPathTable::Settings{.center = condyle(which),
                                                       .axis = (left_ - right_).normalized(),
-                                                      .gap = gap,
+                                                      .gap = joint.gap,
                                                       .widest_shift_mm = widest},
                           threads);
       from_fossa = true;

@@ -73,6 +73,8 @@ class JawJoints {
 
   /// The fossae, where they guide.
   const std::optional<JointSurfaces>& surfaces() const { return surfaces_; }
+  /// The disc that a fossa guides by.
+  const DiscGap& disc_gap(JawSide which) const { return side(which).gap; }
   /// Whether the case contains the condylar path, so that the maximum opening is not estimated.
   bool well_known() const { return well_known_; }
   /// Description of the source of the paths.
@@ -82,6 +84,7 @@ class JawJoints {
   void set_condyles(const Case& patient, const MotionParameters& parameters);
   struct Side {
     std::optional<CondylarPathTable> table;
+    DiscGap gap;
     Pchip path;  // inferior translation by forward travel, without a table
   };
   const Side& side(JawSide which) const { return sides_[which == JawSide::left ? 0 : 1]; }

@@ -70,14 +70,14 @@ bool is_free(const ContactSet& now, const ContactSet& rest) {
 struct DiscLimits {
   double left = 0, right = 0;
 
-  DiscLimits(const JawJoints& joints, const MotionParameters& parameters) {
+  explicit DiscLimits(const JawJoints& joints) {
     if (!joints.surfaces()) return;
     // A known joint may thin its disc.
     const double fraction = joints.well_known() ? 0.3 : 0.7;
     const auto least = [&](JawSide side) {
-      const double rest = joints.surfaces()->rest_gap_mm(side);
-      return fraction * std::min({rest, parameters.disc_gap_mm.value_or(rest),
-                                  parameters.disc_gap_front_mm.value_or(rest)});
+      const DiscGap& gap = joints.disc_gap(side);
+      return fraction *
+             std::min({joints.surfaces()->rest_gap_mm(side), gap.seated_mm, gap.front_mm});
     };
     left = least(JawSide::left);
     right = least(JawSide::right);
@@ -154,7 +154,7 @@ OpeningLimits opening_limits(const JawJoints& joints, const ContactModel& contac
                             ? Target{true, *asked}
                             : Target{false, joints.well_known() ? known_joint_displacement_mm
                                                                 : estimated_joint_displacement_mm};
-  const DiscLimits disc(joints, parameters);
+  const DiscLimits disc(joints);
   // The first coupling that reaches the target freely, else the one that opens farthest.
   struct Choice {
     Coupling coupling;

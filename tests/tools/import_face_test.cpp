@@ -55,7 +55,7 @@ double median_distance(const fs::path& found, const fs::path& truth, double leas
 TEST(ImportFace, ScansOfTheBuiltInPatientBecomeAPatientWhoOpensAlike) {
   const Folder folder;
   const std::string scans = folder / "scans";
-  Outcome done = condyle({"phantom", "--scan", "all", "--voxel", "1.1", "--out", scans});
+  Outcome done = condyle({"phantom", "--scan", "all", "--out", scans});
   ASSERT_EQ(done.code, 0) << done.err;
   for (const char* name :
        {"ct.nrrd", "ct/slice-0001.dcm", "ct-landmarks.csv", "laser.json", "laser-depth.png",
@@ -86,7 +86,7 @@ TEST(ImportFace, ScansOfTheBuiltInPatientBecomeAPatientWhoOpensAlike) {
   double most = 0;
   for (std::size_t i = 0; i < truth.size(); ++i)
     most = std::max(most, (truth[i] - opened[i]).norm());
-  EXPECT_LT(most, 1.1) << "a voxel";
+  EXPECT_LT(most, 0.5);
 }
 
 TEST(ImportFace, AFaceAloneBecomesACase) {

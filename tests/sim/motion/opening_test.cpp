@@ -4,6 +4,7 @@
 
 #include "engine/core/error.h"
 #include "sim/motion/condylar_kinematics.h"
+#include "sim/motion/jaw_joints.h"
 #include "sim/motion/joint_surfaces.h"
 #include "sim/motion/measure_pose.h"
 #include "sim/motion/motion.h"
@@ -165,8 +166,9 @@ TEST(Opening, AverageJointHasItsInclinationAndAFlatEnd) {
   for (double s = 0.25; s <= 20; s += 0.25) EXPECT_GE(path(s), path(s - 0.25) - 1e-12);
 }
 
-TEST(Opening, CondylesInAFossaKeepTheirRestGap) {
-  const Case patient = jaw_in_fossae();
+TEST(Opening, CondylesInAFossaKeepADiscOfEvenThickness) {
+  Case patient = jaw_in_fossae();
+  patient.motion.disc_gap_front_mm = 2;
   auto joint = JointSurfaces::find(patient);
   ASSERT_TRUE(joint);
   EXPECT_NEAR(joint->rest_gap_mm(), 2, 0.05);
@@ -183,6 +185,24 @@ TEST(Opening, CondylesInAFossaKeepTheirRestGap) {
   const Measures open = measure(patient, motion.target(0.5 * motion.duration_s));
   const Eigen::Vector3d displacement = *patient.landmarks.find("left_condyle") - open.left_condyle;
   EXPECT_NEAR(std::atan2(displacement.z(), displacement.y()) / degree, 35, 1.5);
+}
+
+TEST(Opening, TheDiscIsThinnerOnTheEminence) {
+  const Case patient = jaw_in_fossae();
+  auto joint = JointSurfaces::find(patient);
+  ASSERT_TRUE(joint);
+  const double rest = joint->rest_gap_mm();
+  EXPECT_NEAR(rest, 2, 0.05);
+  const Motion motion = opening_of(patient);
+  double least = 0;
+  for (int i = 0; i <= 120; ++i)
+    least = std::min(least, joint->slack_mm(motion.target(0.5 * motion.duration_s * i / 120)));
+  EXPECT_NEAR(rest + least, 1.3, 0.1);
+  // One that is thinner when seated keeps its thickness.
+  Case narrow = patient;
+  narrow.motion.disc_gap_mm = 1;
+  const JawJoints joints(narrow, narrow.motion, JointReach::straight, 1);
+  EXPECT_EQ(joints.disc_gap(JawSide::left).front_mm, 1);
 }
 
 TEST(Opening, AJawThatMeetsBoneStopsUnlessAnOpeningIsRequested) {
