@@ -119,6 +119,12 @@ TEST_F(WindowCt, OpensTheMouthOfAFolderOfDicomFiles) {
   click("ct-seed-undo");
   ASSERT_TRUE(wait_for_item("ct-seed-remark", false));
 
+  // One on the bone of the chin is used.
+  click_slice("ct-sagittal", 0.19, 0.82);
+  EXPECT_TRUE(wait_until([](const Json& s) { return s["ct"]["seeds"] == 1; }));
+  see("seed-on-chin");
+  EXPECT_EQ(state()["ct"]["seed_remark"], "");
+
   // Making the patient is cancelled, and done.
   click("ct-make");
   ASSERT_TRUE(wait_for_stage("making"));
@@ -126,6 +132,7 @@ TEST_F(WindowCt, OpensTheMouthOfAFolderOfDicomFiles) {
   ASSERT_TRUE(wait_for_stage("slices"));
   EXPECT_FALSE(fs::exists(folder_ / "scan-patient"));
   EXPECT_EQ(state()["case"]["name"], patient);
+  EXPECT_EQ(state()["ct"]["seeds"], 1);
   click("ct-make");
   ASSERT_TRUE(wait_for_stage("making"));
   see_now("making");
