@@ -117,6 +117,11 @@ TEST(ImportCt, ARealHeadWithFillingsOpensItsMouth) {
   ASSERT_TRUE(std::regex_search(checked.err, opening, std::regex("maximum opening ([0-9.]+) mm")))
       << checked.err;
   EXPECT_GT(std::stod(opening[1]), 40);
+  // Under its own skin, which is rough and marked by a bandage.
+  const auto opened =
+      condyle({"run", patient, "--motion", "open 40", "--frames", "4", "--out", folder / "opened"});
+  ASSERT_EQ(opened.code, 0) << opened.err;
+  EXPECT_TRUE(fs::exists(folder / "opened/trace.csv"));
 }
 
 }  // namespace

@@ -1,0 +1,37 @@
+#include "sim/tissue/skin_region.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "engine/mesh/topology.h"
+#include "tests/sim/tissue/plain_patient.h"
+
+namespace condyle::test {
+namespace {
+
+std::size_t borders(const Case& patient) {
+  std::vector<std::string> notes;
+  return border_loops(cut_region(patient.find(Role::face)->mesh, patient.landmarks,
+                                 read_anatomy(patient, notes), notes)
+                          .mesh)
+      .size();
+}
+
+/// The region ends below the eyes, at z 5.5 mm here.
+TEST(SkinRegion, ABumpBelowItsBorderLeavesNoHole) {
+  Case patient = plain_patient();
+  EXPECT_EQ(borders(patient), 2u) << "its own, and the mouth";
+  int bumps = 0;
+  for (Part& part : patient.parts)
+    for (auto& v : part.mesh.vertices)
+      if (part.role == Role::face && std::abs(v.z() - 3.2) < 0.1 && v.x() > 10 && v.x() < 12) {
+        v += Eigen::Vector3d(0, -3, 2.6);
+        ++bumps;
+      }
+  ASSERT_EQ(bumps, 1);
+  EXPECT_EQ(borders(patient), 2u);
+}
+
+}  // namespace
+}  // namespace condyle::test
