@@ -1,45 +1,27 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
-#include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "engine/core/error.h"
-#include "engine/mesh_io/mesh_files.h"
 #include "sim/case/case_format.h"
 #include "sim/case/case_io.h"
 #include "sim/case/soft_landmarks.h"
 #include "sim/face_scan/fuse_face.h"
 #include "tools/commands.h"
 #include "tools/common.h"
+#include "tools/residual_map.h"
 
 namespace condyle {
 namespace {
+
+constexpr double full_residual_mm = 2;  // of the strongest colours
 
 struct FaceImportOptions {
   std::filesystem::path scan, patient, landmarks, residuals, out;
   std::string units = "mm", frame = "LPS", name;
 };
-
-/// The registered scan, blue where it lies inside the skin and red where outside, by up to 2 mm;
-/// grey without a partner.
-TriMesh residual_map(const FaceScan& scan, const FaceRegistration& registration) {
-  constexpr float full_mm = 2;
-  TriMesh map = scan.mesh;
-  map.colors.clear();
-  for (auto& v : map.vertices) v = registration.X_CS * v;
-  for (const float residual : registration.residual_mm) {
-    if (std::isnan(residual)) {
-      map.colors.emplace_back(.5f, .5f, .5f);
-      continue;
-    }
-    const float s = std::clamp(residual / full_mm, -1.f, 1.f);
-    map.colors.emplace_back(s > 0 ? 1.f : 1 + s, 1 - std::abs(s), s < 0 ? 1.f : 1 - s);
-  }
-  return map;
-}
 
 nlohmann::ordered_json json_of(const FaceRegistration& found, const FaceFusion& fusion) {
   nlohmann::ordered_json json = {
@@ -109,7 +91,11 @@ int run_import_face(const FaceImportOptions& options, const CommonOptions& commo
     const FaceFusion fusion = fuse_face(scan, found, common.threads, patient);
     for (const auto& note : notes_of(found, fusion)) notes.push_back(note);
     notes.insert(notes.end(), found.notes.begin(), found.notes.end());
-    if (!options.residuals.empty()) write_ply(residual_map(scan, found), options.residuals);
+    if (!options.residuals.empty()) {
+      ResidualMap map(full_residual_mm);
+      map.add(scan.mesh, found.X_CS, found.residual_mm);
+      map.write(options.residuals);
+    }
     json["registration"] = json_of(found, fusion);
   }
   if (!options.name.empty() || patient.name.empty())
@@ -164,7 +150,7 @@ void add_import_face(Commands& commands, CLI::App& import) {
   command
       .add_option("--residuals", options->residuals,
                   "Write the registered scan coloured by its distance to the skin: blue 2 mm "
-                  "inside, red 2 mm outside (.ply)")
+                  "inside, red 2 mm outside; with the distances (.ply)")
       ->type_name("FILE");
 }
 

@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -11,6 +13,7 @@
 #include "sim/phantom/phantom.h"
 #include "tools/commands.h"
 #include "tools/common.h"
+#include "tools/residual_map.h"
 
 namespace condyle {
 namespace {
@@ -20,6 +23,7 @@ struct TeethImportOptions {
   std::filesystem::path upper, lower, upper_points, lower_points;
   std::string units = "mm", name;
   bool accept = false;
+  std::filesystem::path residuals;
   std::filesystem::path out;
 };
 
@@ -28,20 +32,38 @@ nlohmann::ordered_json pose_json(const Pose& X) {
           {"translation_mm", {X.t.x(), X.t.y(), X.t.z()}}};
 }
 
-nlohmann::ordered_json fit_json(const ArchFit& fit) {
+/// Of the vertices of a scan that have a partner.
+nlohmann::ordered_json residuals_json(const std::vector<float>& residual_mm) {
+  std::vector<float> found;
+  for (const float residual : residual_mm)
+    if (!std::isnan(residual)) found.push_back(residual);
+  nlohmann::ordered_json json = {{"vertices", residual_mm.size()}, {"with_partner", found.size()}};
+  if (found.empty()) return json;
+  std::sort(found.begin(), found.end());
+  json["least_mm"] = found.front();
+  json["median_mm"] = found[found.size() / 2];
+  json["largest_mm"] = found.back();
+  return json;
+}
+
+nlohmann::ordered_json fit_json(const ArchFit& fit, const std::vector<TrimmedBone>& bones) {
   nlohmann::ordered_json json = {{"mean_mm", fit.mean_mm},     {"median_mm", fit.median_mm},
                                  {"p95_mm", fit.p95_mm},       {"left_out", fit.left_out},
                                  {"halves_mm", fit.halves_mm}, {"points", fit.points},
                                  {"X_CS", pose_json(fit.X_CS)}};
   if (fit.mirrored_mm) json["mirrored_mm"] = *fit.mirrored_mm;
   if (fit.exchanged_mm) json["exchanged_mm"] = *fit.exchanged_mm;
+  if (!fit.residual_mm.empty()) json["residuals"] = residuals_json(fit.residual_mm);
+  for (const auto& bone : bones)
+    json["bones"].push_back(
+        {{"part", bone.part}, {"removed_mm3", bone.removed_mm3}, {"open_edges", bone.open_edges}});
   return json;
 }
 
 nlohmann::ordered_json result_json(const ScannedArches& made, const std::filesystem::path& out) {
   nlohmann::ordered_json json = {{"case", out.string()}, {"name", made.patient.name}};
-  if (made.upper) json["upper"] = fit_json(*made.upper);
-  if (made.lower) json["lower"] = fit_json(*made.lower);
+  if (made.upper) json["upper"] = fit_json(*made.upper, made.upper_bones);
+  if (made.lower) json["lower"] = fit_json(*made.lower, made.lower_bones);
   if (made.together)
     json["in_occlusion"] = {{"found", made.together->in_occlusion},
                             {"left_places", made.together->left},
@@ -79,9 +101,20 @@ ScannedArchesRequest request_of(const TeethImportOptions& options, int threads) 
   return request;
 }
 
+/// Both arches in one file, where they lie in the case.
+void write_residuals(const ScannedArchesRequest& request, const ScannedArches& made,
+                     const std::filesystem::path& file) {
+  ResidualMap map(refused_fit_mm);
+  if (made.upper) map.add(request.upper->mesh, made.upper->X_CS, made.upper->residual_mm);
+  if (made.lower) map.add(request.lower->mesh, made.lower->X_CS, made.lower->residual_mm);
+  map.write(file);
+}
+
 int run_import_teeth(const TeethImportOptions& options, const CommonOptions& common) {
   if (options.upper.empty() && options.lower.empty())
     throw InputError("no dental scan is given; name one with --upper or --lower");
+  if (options.patient.empty() && !options.residuals.empty())
+    throw InputError("--residuals needs CASE, to whose crowns the scans are registered");
   ProgressBar bar(common);
   bar.show("reading", 0);
   const ScannedArchesRequest request = request_of(options, common.threads);
@@ -95,6 +128,7 @@ int run_import_teeth(const TeethImportOptions& options, const CommonOptions& com
   else if (options.patient.empty())
     made.patient.name = (options.out / "").parent_path().filename().string();
   bar.show("writing", 1);
+  if (!options.residuals.empty()) write_residuals(request, made, options.residuals);
   save_case(made.patient, options.out);
   bar.clear();
   if (common.json)
@@ -133,6 +167,12 @@ void add_import_teeth(Commands& commands, CLI::App& import) {
       ->type_name("mm|cm|m|in");
   command.add_flag("--accept", options->accept,
                    "Accept a scan that lies more than 0.5 mm off after registration");
+  command
+      .add_option(
+          "--residuals", options->residuals,
+          "Write the registered scans coloured by their distance to the case's crowns: blue "
+          "0.5 mm inside, red 0.5 mm outside; with the distances (.ply)")
+      ->type_name("FILE");
   command.add_option("--name", options->name, "Name of the case")->type_name("TEXT");
   command.add_option("--out", options->out, "Folder of the new case")
       ->type_name("FOLDER")

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
+#include <string>
 
 #include "engine/mesh/tri_mesh.h"
 
@@ -22,6 +24,10 @@ TriMesh read_mesh(const std::filesystem::path& file);
 /// Binary little-endian PLY with double coordinates, so that reading restores the same bits.
 /// throws: MachineError; the old file stays intact.
 void write_ply(const TriMesh& mesh, const std::filesystem::path& file);
+
+/// The same with a number for each vertex: a property of this name (a word), in single precision.
+void write_ply(const TriMesh& mesh, const std::string& property, std::span<const float> values,
+               const std::filesystem::path& file);
 
 /// Binary STL (single precision, no colours), for other programs. throws: MachineError.
 void write_stl(const TriMesh& mesh, const std::filesystem::path& file);

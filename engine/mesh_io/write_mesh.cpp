@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <cassert>
 #include <cmath>
 #include <cstdint>
 #include <string>
@@ -32,6 +33,12 @@ bool fits_bytes(const TriMesh& mesh) {
 }  // namespace
 
 void write_ply(const TriMesh& mesh, const std::filesystem::path& file) {
+  write_ply(mesh, "", {}, file);
+}
+
+void write_ply(const TriMesh& mesh, const std::string& property, std::span<const float> values,
+               const std::filesystem::path& file) {
+  assert(values.empty() || values.size() == mesh.vertices.size());
   const bool colored = !mesh.colors.empty();
   const bool bytes = fits_bytes(mesh);
   std::string out = fmt::format(
@@ -41,9 +48,10 @@ void write_ply(const TriMesh& mesh, const std::filesystem::path& file) {
   if (colored)
     for (const char* name : {"red", "green", "blue"})
       out += fmt::format("property {} {}\n", bytes ? "uchar" : "float", name);
+  if (!values.empty()) out += fmt::format("property float {}\n", property);
   out += fmt::format("element face {}\nproperty list uchar int vertex_indices\nend_header\n",
                      mesh.triangles.size());
-  out.reserve(out.size() + mesh.vertices.size() * 36 + mesh.triangles.size() * 13);
+  out.reserve(out.size() + mesh.vertices.size() * 40 + mesh.triangles.size() * 13);
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     for (int k = 0; k < 3; ++k) put(out, mesh.vertices[i][k]);
     for (int k = 0; colored && k < 3; ++k) {
@@ -52,6 +60,7 @@ void write_ply(const TriMesh& mesh, const std::filesystem::path& file) {
       else
         put(out, mesh.colors[i][k]);
     }
+    if (!values.empty()) put(out, values[i]);
   }
   for (const auto& t : mesh.triangles) {
     put(out, std::uint8_t{3});

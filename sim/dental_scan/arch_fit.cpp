@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "engine/core/error.h"
+#include "engine/core/parallel.h"
 #include "engine/mesh/measure.h"
 #include "engine/registration/rigid_fit.h"
 
@@ -206,6 +207,20 @@ ArchFit fit_arch(const DentalScan& scan, const ArchTarget& target, const ArchFit
     fit.exchanged_mm = std::min(fit_anyhow(sides[0], *request.opposing, settings).residual_mm,
                                 fit_anyhow(sides[1], *request.opposing, settings).residual_mm);
   return fit;
+}
+
+std::vector<float> crown_distances(const DentalScan& scan, const ArchTarget& target,
+                                   const Pose& X_CS, int threads) {
+  const BestFitSettings settings = fit_settings(threads);
+  const std::vector<Vector3d> normals = vertex_normals(scan.mesh);
+  std::vector<float> residual_mm(normals.size(), std::nanf(""));
+  parallel_for(normals.size(), threads, [&](std::size_t i) {
+    const auto pair = target.pairs().find(X_CS * scan.mesh.vertices[i], X_CS.R * normals[i],
+                                          settings.fit.least_cos);
+    if (pair && std::abs(pair->distance) <= settings.far_mm)
+      residual_mm[i] = static_cast<float>(pair->distance);
+  });
+  return residual_mm;
 }
 
 std::string refusal(const ArchFit& fit, const DentalScan& scan, const ArchTarget& target,

@@ -57,6 +57,7 @@ struct ArchFit {
   std::optional<double> mirrored_mm = {};   // mean_mm of the mirror image, where tested
   std::optional<double> exchanged_mm = {};  // mean_mm on the opposing arch, where this is not good
   double picks_mm = 0;                      // greatest distance of picked points
+  std::vector<float> residual_mm = {};      // see crown_distances(); of a scan in a case
 };
 
 struct ArchFitRequest {
@@ -70,6 +71,11 @@ struct ArchFitRequest {
 /// Registers a scan to crowns: rigid, never mirrored. Without picks it starts in every attitude
 /// about the crowns. throws: InputError for picks without partners or that do not fit.
 ArchFit fit_arch(const DentalScan& scan, const ArchTarget& target, const ArchFitRequest& request);
+
+/// Distances of the vertices of a registered scan from the crowns of the case, mm, positive outside
+/// them; NaN without a partner: more than 3 mm away, beyond a rim, or facing another direction.
+std::vector<float> crown_distances(const DentalScan& scan, const ArchTarget& target,
+                                   const Pose& X_CS, int threads);
 
 /// Why the scan must not be used: mirrored, exchanged, or too far off; empty if it may.
 std::string refusal(const ArchFit& fit, const DentalScan& scan, const ArchTarget& target,

@@ -11,6 +11,7 @@
 #include "engine/core/error.h"
 #include "sim/case/case_io.h"
 #include "sim/case/tooth_labels.h"
+#include "sim/dental_scan/carried_crowns.h"
 #include "sim/dental_scan/close_scan.h"
 #include "sim/occlusion/arches.h"
 
@@ -89,7 +90,7 @@ class ArchRegistration {
   std::optional<ArchTarget> target_[2];  // lower, upper
 };
 
-void fit_scans(const ArchRegistration& registration, bool accept, ScannedArches& made,
+void fit_scans(const ArchRegistration& registration, bool accept, int threads, ScannedArches& made,
                const Progress& progress) {
   for (const bool upper : {true, false}) {
     if (!registration.scan(upper)) continue;
@@ -100,8 +101,35 @@ void fit_scans(const ArchRegistration& registration, bool accept, ScannedArches&
             refusal(fit, *registration.scan(upper), registration.target(upper), accept);
         !why.empty())
       throw InputError(why);
-    (upper ? made.upper : made.lower) = fit;
+    ArchFit& kept = (upper ? made.upper : made.lower).emplace(fit);
+    kept.residual_mm =
+        crown_distances(*registration.scan(upper), registration.target(upper), fit.X_CS, threads);
   }
+}
+
+/// Removes the crowns that the bones of an arch carry besides its teeth.
+std::vector<TrimmedBone> trim_bones(Case& patient, const DentalScan& scan, const Pose& X_CS,
+                                    const Part& before, const Vector3d& bite,
+                                    std::vector<std::string>& notes) {
+  std::vector<TrimmedBone> bones;
+  const TriMesh crowns = moved(scan.mesh, X_CS);
+  for (Part& part : patient.parts) {
+    if (part.body != before.body || is_teeth(part.role) || !collides(part.role)) continue;
+    BoneWithoutCrowns rest = without_carried_crowns(part.mesh, {crowns, before.mesh, bite});
+    if (rest.open_edges > 0)
+      notes.push_back(fmt::format(
+          "{}: reaches the crowns of {}, but its surface is open at {} edges: the crowns that it "
+          "carries stay; close it first",
+          part.name, scan.source, rest.open_edges));
+    else if (rest.removed_mm3 > 0)
+      notes.push_back(fmt::format("{}: {:.0f} mm3 that it had round the crowns of {} removed",
+                                  part.name, rest.removed_mm3, scan.source));
+    else
+      continue;
+    bones.push_back({part.name, rest.removed_mm3, rest.open_edges});
+    part.mesh = std::move(rest.mesh);
+  }
+  return bones;
 }
 
 }  // namespace
@@ -110,7 +138,7 @@ ScannedArches with_scanned_arches(Case patient, const ScannedArchesRequest& requ
                                   const Progress& progress) {
   ScannedArches made;
   const ArchRegistration registration(patient, request);
-  fit_scans(registration, request.accept_residual, made, progress);
+  fit_scans(registration, request.accept_residual, request.threads, made, progress);
   std::vector<std::string> notes;
   for (const bool upper : {true, false})
     if (const auto& fit = upper ? made.upper : made.lower)
@@ -138,6 +166,9 @@ ScannedArches with_scanned_arches(Case patient, const ScannedArchesRequest& requ
   for (const bool upper : {true, false}) {
     const auto& fit = upper ? made.upper : made.lower;
     if (!fit) continue;
+    (upper ? made.upper_bones : made.lower_bones) =
+        trim_bones(patient, *registration.scan(upper), fit->X_CS, crowns_of(patient, upper),
+                   registration.target(upper).bite(), notes);
     for (Part& part : patient.parts)
       if (&part == &crowns_of(patient, upper))
         part = scanned_part(*registration.scan(upper), fit->X_CS, registration.target(upper),

@@ -1,0 +1,211 @@
+#include "sim/dental_scan/carried_crowns.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/cut/cell_complex.h"
+#include "engine/cut/cut.h"
+#include "engine/mesh/measure.h"
+#include "engine/mesh/repair.h"
+#include "engine/mesh/topology.h"
+#include "engine/mesh/triangle_tree.h"
+#include "sim/dental_scan/crown_points.h"
+
+namespace condyle {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr int sample_count = 8000;
+constexpr double section_mm = 8;
+constexpr double top_reach_mm = 4;         // within which the tips count for the floor of a section
+constexpr double ceiling_mm = 6;           // above the crowns: lumps of streaks
+constexpr double beyond_mm = 0.5;          // reach of the cuts beyond the space
+constexpr double near_teeth_mm = 1.5;      // a scanned crown is one of the case's this near to them
+constexpr double in_bone_mm = 0.5;         // or this near to bone
+constexpr double least_above_mm = 1;       // the floor: a crest of bone may reach this far
+constexpr double set_free_fraction = 0.1;  // of the largest piece's volume
+constexpr int sides = 8;
+
+/// Part of an arch: an octagon seen along the bite's direction.
+struct CrownSection {
+  std::array<double, sides> extent;  // of the crowns along each direction across the bite
+  double floor = 0, top = 0;         // along the bite
+};
+
+class CrownSpace {
+ public:
+  CrownSpace(const ReplacingCrowns& crowns, const TriangleTree& bone)
+      : bite_(crowns.bite), right_(bite_.unitOrthogonal()), up_(bite_.cross(right_)) {
+    for (int k = 0; k < sides; ++k) {
+      const double angle = 2 * std::numbers::pi * k / sides;
+      directions_[k] = std::cos(angle) * right_ + std::sin(angle) * up_;
+    }
+    add_sections(crowns_in_case(crowns, bone));
+  }
+
+  /// The sections that a bone reaches, as saw cuts.
+  std::vector<Cut> cuts_of(const TriMesh& bone) const {
+    std::vector<char> reached(sections_.size(), 0);
+    const auto mark = [&](const Vector3d& p) {
+      for (std::size_t i = 0; i < sections_.size(); ++i)
+        if (!reached[i]) reached[i] = holds(sections_[i], p);
+    };
+    for (const auto& t : bone.triangles) {
+      for (const int v : t) mark(bone.vertices[v]);
+      mark((bone.vertices[t[0]] + bone.vertices[t[1]] + bone.vertices[t[2]]) / 3);
+    }
+    std::vector<Cut> cuts;
+    for (std::size_t i = 0; i < sections_.size(); ++i)
+      if (reached[i]) cuts.push_back(cut_of(sections_[i], static_cast<int>(i)));
+    return cuts;
+  }
+
+ private:
+  /// Points on the scanned crowns where the case has crowns, or bone that carries them: not on the
+  /// gum of a gap.
+  std::vector<Vector3d> crowns_in_case(const ReplacingCrowns& crowns,
+                                       const TriangleTree& bone) const {
+    const TriangleTree teeth(crowns.before);
+    std::vector<Vector3d> points;
+    for (const auto& p : crown_points(crowns.scan, bite_, sample_count).points.points)
+      if (teeth.nearest(p, near_teeth_mm).triangle >= 0 ||
+          bone.nearest(p, in_bone_mm).triangle >= 0 || bone.winding_number(p) > 0.5)
+        points.push_back(p);
+    return points;
+  }
+
+  void add_sections(const std::vector<Vector3d>& points) {
+    std::vector<double> top;
+    for (const auto& p : points) {
+      top.push_back(bite_.dot(p));
+      for (const auto& q : points)
+        if (const Vector3d off = q - p;
+            off.squaredNorm() - std::pow(bite_.dot(off), 2) < top_reach_mm * top_reach_mm)
+          top.back() = std::max(top.back(), bite_.dot(q));
+    }
+    std::map<std::pair<int, int>, std::vector<std::size_t>> cells;
+    for (std::size_t i = 0; i < points.size(); ++i)
+      cells[{static_cast<int>(std::floor(right_.dot(points[i]) / section_mm)),
+             static_cast<int>(std::floor(up_.dot(points[i]) / section_mm))}]
+          .push_back(i);
+    for (const auto& [cell, inside] : cells) {
+      CrownSection section;
+      section.extent.fill(-1e9);
+      section.top = -1e9;
+      for (const std::size_t i : inside) {
+        for (int k = 0; k < sides; ++k)
+          section.extent[k] = std::max(section.extent[k], directions_[k].dot(points[i]));
+        section.floor += (top[i] - crown_floor_mm) / static_cast<double>(inside.size());
+        section.top = std::max(section.top, top[i]);
+      }
+      sections_.push_back(section);
+    }
+  }
+
+  bool holds(const CrownSection& section, const Vector3d& p) const {
+    const double height = bite_.dot(p);
+    if (height < section.floor + least_above_mm || height > section.top + ceiling_mm) return false;
+    for (int k = 0; k < sides; ++k)
+      if (directions_[k].dot(p) > section.extent[k] + in_bone_mm) return false;
+    return true;
+  }
+
+  /// Planes round the space of a section, facing outward, moved outward.
+  std::vector<Plane> planes_of(const CrownSection& section, double outward_mm) const {
+    std::vector<Plane> planes = {{-bite_, outward_mm - section.floor},
+                                 {bite_, section.top + ceiling_mm + outward_mm}};
+    for (int k = 0; k < sides; ++k)
+      planes.push_back({directions_[k], section.extent[k] + crown_tube_mm + outward_mm});
+    return planes;
+  }
+
+  Cut cut_of(const CrownSection& section, int number) const {
+    const std::vector<Plane> planes = planes_of(section, 0);
+    Region inside = opposite(Region::above(planes[0]));
+    for (std::size_t i = 1; i < planes.size(); ++i)
+      inside = both(std::move(inside), opposite(Region::above(planes[i])));
+    return {"crowns " + std::to_string(number), std::move(inside), planes_of(section, beyond_mm)};
+  }
+
+  Vector3d bite_, right_, up_;
+  std::array<Vector3d, sides> directions_;
+  std::vector<CrownSection> sections_;
+};
+
+bool has_cut_face(const Piece& piece) {
+  return std::any_of(piece.wall.begin(), piece.wall.end(), [](int wall) { return wall >= 0; });
+}
+
+void append(TriMesh& mesh, const TriMesh& other) {
+  const int offset = static_cast<int>(mesh.vertices.size());
+  mesh.vertices.insert(mesh.vertices.end(), other.vertices.begin(), other.vertices.end());
+  mesh.colors.insert(mesh.colors.end(), other.colors.begin(), other.colors.end());
+  for (const auto& t : other.triangles)
+    mesh.triangles.push_back(t + Eigen::Vector3i::Constant(offset));
+}
+
+/// The pieces beside a cut, without those that it set free.
+TriMesh joined_rest(const std::vector<Piece>& pieces) {
+  TriMesh rest;
+  for (const Piece& piece : pieces) {
+    if (piece.sides.front() == CutSide::above) continue;
+    if (has_cut_face(piece) && piece.volume_mm3 < set_free_fraction * pieces.front().volume_mm3)
+      continue;
+    append(rest, piece.mesh);
+  }
+  return rest;
+}
+
+Box box_of(const TriMesh& crowns) {
+  constexpr double around_mm = 10;
+  Box box = bounding_box(crowns);
+  box.low -= Vector3d::Constant(around_mm);
+  box.high += Vector3d::Constant(around_mm);
+  return box;
+}
+
+/// Parts a bone into its shells near a box and the others, such as far cavities.
+std::array<TriMesh, 2> parted_shells(const TriMesh& bone, const Box& box) {
+  const Components shells = find_components(bone);
+  std::vector<char> near(static_cast<std::size_t>(shells.count), 0);
+  for (std::size_t t = 0; t < bone.triangles.size(); ++t)
+    for (const int v : bone.triangles[t])
+      if (box.contains(bone.vertices[v])) near[shells.of_triangle[t]] = 1;
+  std::array<TriMesh, 2> parts = {bone, bone};
+  for (const bool is_near : {false, true}) {
+    TriMesh& part = parts[is_near];
+    part.triangles.clear();
+    for (std::size_t t = 0; t < bone.triangles.size(); ++t)
+      if (near[shells.of_triangle[t]] == is_near) part.triangles.push_back(bone.triangles[t]);
+    drop_unreferenced(part);
+  }
+  return parts;
+}
+
+}  // namespace
+
+BoneWithoutCrowns without_carried_crowns(const TriMesh& bone, const ReplacingCrowns& crowns) {
+  BoneWithoutCrowns result{bone};
+  if (bone.empty()) return result;
+  const std::vector<Cut> cuts = CrownSpace(crowns, TriangleTree(bone)).cuts_of(bone);
+  if (cuts.empty()) return result;
+  result.open_edges = unbalanced_edges(bone);
+  if (result.open_edges > 0) return result;
+  auto [far, rest] = parted_shells(bone, box_of(crowns.scan));
+  // One after another: together they would divide each other into many pieces.
+  for (const Cut& cut : cuts) rest = joined_rest(cut_bone(rest, {&cut, 1}).pieces);
+  append(rest, far);
+  result.mesh = std::move(rest);
+  result.removed_mm3 = signed_volume(bone) - signed_volume(result.mesh);
+  return result;
+}
+
+}  // namespace condyle

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "engine/mesh/tri_mesh.h"
+
+namespace condyle {
+
+/// Space round the crowns of a scan that bone must leave: sections 8 mm wide, from this depth below
+/// the local tips of the crowns, less than any crown is high and above every crest of bone.
+inline constexpr double crown_floor_mm = 6;
+inline constexpr double crown_tube_mm = 1.5;  // beside the crowns
+
+/// Crowns of the scan that replaces those of a case.
+struct ReplacingCrowns {
+  const TriMesh& scan;    // in the case
+  const TriMesh& before;  // the case's crowns
+  Eigen::Vector3d bite;   // unit, towards the opposing arch
+};
+
+/// A bone without the crowns that it carried besides its teeth.
+struct BoneWithoutCrowns {
+  TriMesh mesh;            // closed; the given mesh where nothing was removed
+  double removed_mm3 = 0;  // 0: it does not reach the crowns
+  int open_edges = 0;      // it reaches them, and nothing was removed because its surface is open
+};
+
+/// Saws off what a bone has in the space round the crowns, as does a lump of a filling's streaks,
+/// and drops what that sets free. Triangles away from the cuts keep the bits of their corners.
+BoneWithoutCrowns without_carried_crowns(const TriMesh& bone, const ReplacingCrowns& crowns);
+
+}  // namespace condyle
