@@ -29,6 +29,7 @@ constexpr double much_better = 0.7, as_good = 1.05;
 /// Rotations that take one direction to another, evenly turned about it.
 std::vector<Matrix3d> turns(const Vector3d& from, const Vector3d& to) {
   std::vector<Matrix3d> all;
+  all.reserve(attitudes);
   const Matrix3d first = Eigen::Quaterniond::FromTwoVectors(from, to).toRotationMatrix();
   for (int i = 0; i < attitudes; ++i)
     all.push_back(Eigen::AngleAxisd(2 * std::numbers::pi * i / attitudes, to) * first);

@@ -25,8 +25,9 @@ using Eigen::Vector3d;
 
 constexpr int sample_count = 8000;
 constexpr double section_mm = 8;
+constexpr double arch_end_mm = 16;         // behind: second and third molars, with the ramus beside
 constexpr double top_reach_mm = 4;         // within which the tips count for the floor of a section
-constexpr double ceiling_mm = 6;           // above the crowns: lumps of streaks
+constexpr double ceiling_mm = 10;          // above the crowns: lumps of streaks
 constexpr double beyond_mm = 0.5;          // reach of the cuts beyond the space
 constexpr double near_teeth_mm = 1.5;      // a scanned crown is one of the case's this near to them
 constexpr double in_bone_mm = 0.5;         // or this near to bone
@@ -38,17 +39,18 @@ constexpr int sides = 8;
 struct CrownSection {
   std::array<double, sides> extent;  // of the crowns along each direction across the bite
   double floor = 0, top = 0;         // along the bite
+  double tube_mm = crown_tube_mm;
 };
 
 class CrownSpace {
  public:
   CrownSpace(const ReplacingCrowns& crowns, const TriangleTree& bone)
-      : bite_(crowns.bite), right_(bite_.unitOrthogonal()), up_(bite_.cross(right_)) {
+      : bite_(bite_of(crowns)), right_(bite_.unitOrthogonal()), up_(bite_.cross(right_)) {
     for (int k = 0; k < sides; ++k) {
       const double angle = 2 * std::numbers::pi * k / sides;
       directions_[k] = std::cos(angle) * right_ + std::sin(angle) * up_;
     }
-    add_sections(crowns_in_case(crowns, bone));
+    find_sections(crowns, bone);
   }
 
   /// The sections that a bone reaches, as saw cuts.
@@ -69,45 +71,57 @@ class CrownSpace {
   }
 
  private:
-  /// Points on the scanned crowns where the case has crowns, or bone that carries them: not on the
-  /// gum of a gap.
-  std::vector<Vector3d> crowns_in_case(const ReplacingCrowns& crowns,
-                                       const TriangleTree& bone) const {
-    const TriangleTree teeth(crowns.before);
-    std::vector<Vector3d> points;
-    for (const auto& p : crown_points(crowns.scan, bite_, sample_count).points.points)
-      if (teeth.nearest(p, near_teeth_mm).triangle >= 0 ||
-          bone.nearest(p, in_bone_mm).triangle >= 0 || bone.winding_number(p) > 0.5)
-        points.push_back(p);
-    return points;
+  using Points = std::vector<Vector3d>;
+
+  /// Of the scan, whose plane is better known than that of the case's crowns.
+  static Vector3d bite_of(const ReplacingCrowns& crowns) {
+    const Vector3d normal = flat_normal(crowns.scan);
+    return normal.dot(crowns.bite) < 0 ? Vector3d(-normal) : normal;
   }
 
-  void add_sections(const std::vector<Vector3d>& points) {
-    std::vector<double> top;
+  /// Sections in which the case has crowns, or bone that carries them: not those on the gum of a
+  /// gap, or parts of such.
+  void find_sections(const ReplacingCrowns& crowns, const TriangleTree& bone) {
+    const TriangleTree teeth(crowns.before);
+    std::map<std::pair<int, int>, std::array<Points, 2>> cells;  // on gum, on crowns
+    const Points points = crown_points(crowns.scan, bite_, sample_count).points.points;
+    double rear = -1e9;
     for (const auto& p : points) {
-      top.push_back(bite_.dot(p));
-      for (const auto& q : points)
+      rear = std::max(rear, p.y());
+      const bool on_crown = teeth.nearest(p, near_teeth_mm).triangle >= 0 ||
+                            bone.nearest(p, in_bone_mm).triangle >= 0 ||
+                            bone.winding_number(p) > 0.5;
+      cells[{static_cast<int>(std::floor(right_.dot(p) / section_mm)),
+             static_cast<int>(std::floor(up_.dot(p) / section_mm))}][on_crown]
+          .push_back(p);
+    }
+    for (auto& [cell, parts] : cells) {
+      auto& [gum, inside] = parts;
+      if (inside.empty()) continue;
+      if (gum.size() < inside.size()) inside.insert(inside.end(), gum.begin(), gum.end());
+      add_section(inside, points, rear);
+    }
+  }
+
+  void add_section(const Points& inside, const Points& all, double rear) {
+    CrownSection section;
+    section.extent.fill(-1e9);
+    section.top = -1e9;
+    double own_rear = -1e9;
+    for (const auto& p : inside) {
+      own_rear = std::max(own_rear, p.y());
+      double top = bite_.dot(p);
+      for (const auto& q : all)
         if (const Vector3d off = q - p;
             off.squaredNorm() - std::pow(bite_.dot(off), 2) < top_reach_mm * top_reach_mm)
-          top.back() = std::max(top.back(), bite_.dot(q));
+          top = std::max(top, bite_.dot(q));
+      for (int k = 0; k < sides; ++k)
+        section.extent[k] = std::max(section.extent[k], directions_[k].dot(p));
+      section.floor += (top - crown_floor_mm) / static_cast<double>(inside.size());
+      section.top = std::max(section.top, top);
     }
-    std::map<std::pair<int, int>, std::vector<std::size_t>> cells;
-    for (std::size_t i = 0; i < points.size(); ++i)
-      cells[{static_cast<int>(std::floor(right_.dot(points[i]) / section_mm)),
-             static_cast<int>(std::floor(up_.dot(points[i]) / section_mm))}]
-          .push_back(i);
-    for (const auto& [cell, inside] : cells) {
-      CrownSection section;
-      section.extent.fill(-1e9);
-      section.top = -1e9;
-      for (const std::size_t i : inside) {
-        for (int k = 0; k < sides; ++k)
-          section.extent[k] = std::max(section.extent[k], directions_[k].dot(points[i]));
-        section.floor += (top[i] - crown_floor_mm) / static_cast<double>(inside.size());
-        section.top = std::max(section.top, top[i]);
-      }
-      sections_.push_back(section);
-    }
+    if (own_rear < rear - arch_end_mm) section.tube_mm = wide_tube_mm;
+    sections_.push_back(section);
   }
 
   bool holds(const CrownSection& section, const Vector3d& p) const {
@@ -123,7 +137,7 @@ class CrownSpace {
     std::vector<Plane> planes = {{-bite_, outward_mm - section.floor},
                                  {bite_, section.top + ceiling_mm + outward_mm}};
     for (int k = 0; k < sides; ++k)
-      planes.push_back({directions_[k], section.extent[k] + crown_tube_mm + outward_mm});
+      planes.push_back({directions_[k], section.extent[k] + section.tube_mm + outward_mm});
     return planes;
   }
 

@@ -9,13 +9,14 @@ namespace condyle {
 /// Space round the crowns of a scan that bone must leave: sections 8 mm wide, from this depth below
 /// the local tips of the crowns, less than any crown is high and above every crest of bone.
 inline constexpr double crown_floor_mm = 6;
-inline constexpr double crown_tube_mm = 1.5;  // beside the crowns
+inline constexpr double crown_tube_mm = 1;  // beside the crowns at the ends of the arch
+inline constexpr double wide_tube_mm = 4;   // beside the others, where no ramus is near
 
 /// Crowns of the scan that replaces those of a case.
 struct ReplacingCrowns {
   const TriMesh& scan;    // in the case
   const TriMesh& before;  // the case's crowns
-  Eigen::Vector3d bite;   // unit, towards the opposing arch
+  Eigen::Vector3d bite;   // about where the opposing arch is
 };
 
 /// A bone without the crowns that it carried besides its teeth.

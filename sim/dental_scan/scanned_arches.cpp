@@ -122,7 +122,7 @@ std::vector<TrimmedBone> trim_bones(Case& patient, const DentalScan& scan, const
           "carries stay; close it first",
           part.name, scan.source, rest.open_edges));
     else if (rest.removed_mm3 > 0)
-      notes.push_back(fmt::format("{}: {:.0f} mm3 that it had round the crowns of {} removed",
+      notes.push_back(fmt::format("{}: {:.0f} mm3 that reached the crowns of {} were sawn off",
                                   part.name, rest.removed_mm3, scan.source));
     else
       continue;

@@ -2,9 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "engine/mesh_io/mesh_files.h"
+#include "tests/support/exact_distance.h"
 #include "tests/support/program.h"
 
 namespace condyle::test {
@@ -16,6 +20,19 @@ void expect_refusal(const Outcome& outcome, const std::string& words) {
   EXPECT_EQ(outcome.code, 2);
   EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
   EXPECT_NE(outcome.err.find(words), std::string::npos) << outcome.err;
+}
+
+/// The property distance_mm of a PLY file as the program writes it, with colours.
+std::vector<float> distances_in(const fs::path& file, std::size_t count) {
+  const std::string text = read_text(file);
+  EXPECT_LT(text.find("property float blue"),
+            text.find("property float distance_mm\nelement face"));
+  constexpr std::size_t stride = 3 * sizeof(double) + 4 * sizeof(float);
+  std::vector<float> found(count);
+  const std::size_t first = text.find("end_header\n") + 11;
+  for (std::size_t i = 0; i < count; ++i)
+    std::memcpy(&found[i], &text[first + (i + 1) * stride - sizeof(float)], sizeof(float));
+  return found;
 }
 
 }  // namespace
@@ -46,6 +63,37 @@ TEST(ImportTeeth, ScansReplaceTheCrownsOrMakeACaseAlone) {
   const auto found = nlohmann::json::parse(bite.out);
   EXPECT_EQ(found["start"], "the scanned bite of the case");
   EXPECT_LT(found["moved_from_start_mm"].get<double>(), 0.3);
+}
+
+TEST(ImportTeeth, TheMapOfResidualsHoldsExactDistances) {
+  const Folder folder;
+  ASSERT_EQ(condyle({"phantom", "--variant", "class-iii", "--out", folder / "case"}).code, 0);
+  ASSERT_EQ(condyle({"sample", "--out", folder / "sample"}).code, 0);
+  const auto done = condyle({"import", "teeth", folder / "case", "--upper",
+                             folder / "sample/upper.stl", "--lower", folder / "sample/lower.stl",
+                             "--residuals", folder / "map.ply", "--out", folder / "out", "--json"});
+  ASSERT_EQ(done.code, 0) << done.err;
+  const auto json = nlohmann::json::parse(done.out);
+  const TriMesh map = read_mesh(folder / "map.ply");
+  EXPECT_EQ(map.colors.size(), map.vertices.size());
+  const std::vector<float> distance = distances_in(folder / "map.ply", map.vertices.size());
+  const auto vertices_of = [&](const char* arch) {
+    return json[arch]["residuals"]["vertices"].get<std::size_t>();
+  };
+  ASSERT_EQ(vertices_of("upper") + vertices_of("lower"), map.vertices.size());
+  const TriMesh upper = read_mesh(folder / "case/upper_teeth.ply"),
+                lower = read_mesh(folder / "case/lower_teeth.ply");
+  int checked = 0;
+  for (std::size_t i = 0; i < distance.size(); i += 397) {
+    if (std::isnan(distance[i])) continue;
+    ++checked;
+    const TriMesh& teeth = i < vertices_of("upper") ? upper : lower;
+    EXPECT_NEAR(std::abs(distance[i]), exact_distance(map.vertices[i], teeth), 1e-6);
+  }
+  EXPECT_GT(checked, 60);
+  expect_refusal(condyle({"import", "teeth", "--upper", folder / "sample/upper.stl", "--residuals",
+                          folder / "map.ply", "--out", folder / "alone"}),
+                 "--residuals needs CASE");
 }
 
 TEST(ImportTeeth, ASegmentIsPlacedByTheScannedBite) {
