@@ -25,8 +25,8 @@ TEST(SkinRegion, ABumpBelowItsBorderLeavesNoHole) {
   int bumps = 0;
   for (Part& part : patient.parts)
     for (auto& v : part.mesh.vertices)
-      if (part.role == Role::face && std::abs(v.z() - 3.2) < 0.1 && v.x() > 10 && v.x() < 12) {
-        v += Eigen::Vector3d(0, -3, 2.6);
+      if (part.role == Role::face && std::abs(v.z() + 1.9) < 0.1 && v.x() > 10 && v.x() < 12) {
+        v += Eigen::Vector3d(0, -3, 7.6);
         ++bumps;
       }
   ASSERT_EQ(bumps, 1);
