@@ -58,22 +58,6 @@ void keep_largest(TriMesh& mesh, std::vector<int>& source) {
   mesh = kept_part(mesh, keep, source);
 }
 
-/// Keeps small pieces of what is cut off: dips and bumps that the border of the region passes.
-void keep_small(const TriMesh& mesh, const std::vector<char>& dropped, std::vector<char>& keep) {
-  constexpr double largest_mm2 = 150;
-  TriMesh off{mesh.vertices, {}, {}};
-  std::vector<std::size_t> number;  // in the mesh, of each triangle cut off
-  for (std::size_t t = 0; t < dropped.size(); ++t) {
-    if (!dropped[t]) continue;
-    off.triangles.push_back(mesh.triangles[t]);
-    number.push_back(t);
-  }
-  const Components parts = find_components(off);
-  const std::vector<double> area = component_areas(off, parts);
-  for (std::size_t i = 0; i < number.size(); ++i)
-    if (area[parts.of_triangle[i]] < largest_mm2) keep[number[i]] = 1;
-}
-
 /// Triangles use the first of all vertices at equal coordinates; no vertex is removed.
 void join_equal_points(TriMesh& mesh) {
   std::vector<int> order(mesh.vertices.size()), first(mesh.vertices.size());
@@ -235,6 +219,41 @@ double RegionShape::inside(const Vector3d& p) const {
   return std::min({top, back, p.z() - floor_z});
 }
 
+namespace {
+
+/// Keeps small pieces of what is cut off: dips and bumps that the border of the region passes.
+void keep_small(const TriMesh& mesh, const std::vector<char>& dropped, std::vector<char>& keep) {
+  constexpr double largest_mm2 = 150;
+  TriMesh off{mesh.vertices, {}, {}};
+  std::vector<std::size_t> number;  // in the mesh, of each triangle cut off
+  for (std::size_t t = 0; t < dropped.size(); ++t) {
+    if (!dropped[t]) continue;
+    off.triangles.push_back(mesh.triangles[t]);
+    number.push_back(t);
+  }
+  const Components parts = find_components(off);
+  const std::vector<double> area = component_areas(off, parts);
+  for (std::size_t i = 0; i < number.size(); ++i)
+    if (area[parts.of_triangle[i]] < largest_mm2) keep[number[i]] = 1;
+}
+
+/// The triangles of the region, without the lining.
+std::vector<char> triangles_inside(const TriMesh& mesh, const RegionShape& shape,
+                                   const std::vector<char>& lining) {
+  std::vector<char> keep(mesh.triangles.size()), beyond(mesh.triangles.size());
+  for (std::size_t t = 0; t < keep.size(); ++t) {
+    double least = 1e9;
+    for (int k = 0; k < 3; ++k)
+      least = std::min(least, shape.inside(mesh.vertices[mesh.triangles[t][k]]));
+    beyond[t] = least <= 0 && !lining[t];
+    keep[t] = least > 0 && !lining[t];
+  }
+  keep_small(mesh, beyond, keep);
+  return keep;
+}
+
+}  // namespace
+
 SkinRegion cut_region(const TriMesh& face, const Landmarks& landmarks, const Anatomy& anatomy,
                       std::vector<std::string>& notes) {
   SkinRegion region;
@@ -266,16 +285,8 @@ SkinRegion cut_region(const TriMesh& face, const Landmarks& landmarks, const Ana
   region.shape.floor_z =
       mask ? box.low.z() - 100 : std::max(box.low.z() + 4, anatomy.mandible_low - 85);
 
-  std::vector<char> keep(mesh.triangles.size()), beyond(mesh.triangles.size());
   const auto lining = find_lining(mesh, opening, anatomy);
-  for (std::size_t t = 0; t < keep.size(); ++t) {
-    double least = 1e9;
-    for (int k = 0; k < 3; ++k)
-      least = std::min(least, region.shape.inside(mesh.vertices[mesh.triangles[t][k]]));
-    beyond[t] = least <= 0 && !lining[t];
-    keep[t] = least > 0 && !lining[t];
-  }
-  keep_small(mesh, beyond, keep);
+  const auto keep = triangles_inside(mesh, region.shape, lining);
   std::vector<int> kept_vertex(mesh.vertices.size());
   for (std::size_t v = 0; v < kept_vertex.size(); ++v) kept_vertex[v] = static_cast<int>(v);
   TriMesh part = kept_part(mesh, keep, kept_vertex);
