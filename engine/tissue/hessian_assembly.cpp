@@ -131,34 +131,71 @@ HessianAssembly::HessianAssembly(const HessianPattern& pattern, const SpringPris
       x_(x),
       exact_(curvatures == HessianKind::exact) {
   for (auto& own : own_) own.resize(pattern.diagonal.size(), Own{});
-  // Contact of two surfaces may couple columns without a common spring. Each surface is then added
-  // separately (weights of one sign), which keeps the matrix positive definite.
-  for (std::size_t i = 0; i < loads.contacts.size(); ++i) {
-    const ContactSpring& row = loads.contacts[i];
-    if (row.gap(x) >= 0) continue;
-    std::array<Spot, ContactSpring::capacity * ContactSpring::capacity> spots;
-    bool whole = true;
-    for (int a = 0; a < row.count; ++a)
-      for (int b = 0; b <= a; ++b) {
-        Spot& spot = spots[a * ContactSpring::capacity + b];
-        spot = pattern.spot(row.node[a], row.node[b]);
-        whole = whole && spot.stored();
+  for (const ContactSpring& row : loads.contacts)
+    if (row.gap(x) < 0)
+      couple({row.node.data(), static_cast<std::size_t>(row.count)},
+             {row.weight.data(), static_cast<std::size_t>(row.count)},
+             row.normal * row.normal.transpose() * (2 * mesh.lambda * row.stiffness));
+  for (const MuscleLine& muscle : loads.muscles) add_line(muscle);
+}
+
+/// Without the term of the law's rise, which couples all points of the line.
+void HessianAssembly::add_line(const MuscleLine& muscle) {
+  const double tension = muscle.law(muscle.length(x_)).tension;
+  if (tension <= 0) return;
+  std::vector<int> node;
+  std::vector<double> weight;
+  for (std::size_t i = 1; i < muscle.points.size(); ++i) {
+    const MuscleLine::Direction along = muscle.direction(i, x_);
+    if (along.length <= 0) continue;
+    node.clear();
+    weight.clear();
+    for (const auto& [point, sign] : {std::pair(i, 1.0), std::pair(i - 1, -1.0)})
+      for (std::size_t k = 0; k < muscle.points[point].node.size(); ++k) {
+        node.push_back(muscle.points[point].node[k]);
+        weight.push_back(sign * muscle.points[point].weight[k]);
       }
-    for (int a = 0; a < row.count; ++a)
-      for (int b = 0; b <= a; ++b) {
-        const double weight = row.weight[a] * row.weight[b];
-        const Spot& spot = spots[a * ContactSpring::capacity + b];
-        if (!spot.stored() || !(whole || weight > 0)) continue;
-        const int part = std::min(pattern.part_of(row.node[a]), pattern.part_of(row.node[b]));
-        presses_[part].push_back({spot, static_cast<int>(i), weight});
-      }
+    couple(node, weight,
+           mesh_.lambda * tension / along.length *
+               (Matrix3d::Identity() - along.unit * along.unit.transpose()));
+  }
+}
+
+/// Contact of two surfaces, or a muscle, may couple columns without a common spring. Each side is
+/// then added separately (weights of one sign); where its own nodes have no common spring, as the
+/// diagonal that bounds it. Both keep the matrix positive definite.
+void HessianAssembly::couple(std::span<const int> node, std::span<const double> weight,
+                             const Matrix3d& matrix) {
+  const int number = static_cast<int>(matrices_.size());
+  matrices_.push_back(matrix);
+  const auto add = [&](std::size_t a, std::size_t b, double product) {
+    const int part = std::min(pattern_.part_of(node[a]), pattern_.part_of(node[b]));
+    couplings_[part].push_back({pattern_.spot(node[a], node[b]), number, product});
+  };
+  bool whole = true, sides_whole = true;
+  std::array<double, 2> sum{};  // of the weights of each side
+  for (std::size_t a = 0; a < node.size(); ++a) {
+    sum[weight[a] > 0] += weight[a];
+    for (std::size_t b = 0; b < a; ++b) {
+      const bool stored = pattern_.spot(node[a], node[b]).stored();
+      whole = whole && stored;
+      sides_whole = sides_whole && (stored || weight[a] * weight[b] <= 0);
+    }
+  }
+  for (std::size_t a = 0; a < node.size(); ++a) {
+    if (!whole && !sides_whole) {
+      add(a, a, weight[a] * sum[weight[a] > 0]);
+      continue;
+    }
+    for (std::size_t b = 0; b <= a; ++b)
+      if (whole || weight[a] * weight[b] > 0) add(a, b, weight[a] * weight[b]);
   }
 }
 
 void HessianAssembly::add(int part, float* panels) {
   add_springs(part, panels);
   add_anchors(part);
-  add_contacts(part, panels);
+  add_couplings(part, panels);
   add_prisms(part, panels);
   add_diagonal(part, panels);
 }
@@ -191,15 +228,14 @@ void HessianAssembly::add_springs(int part, float* panels) {
 void HessianAssembly::add_anchors(int part) {
   for (int i : pattern_.elements[part].anchors) {
     Own& own = own_[part][pattern_.seats[mesh_.anchor_node[i]]];
-    for (int k = 0; k < 3; ++k)
-      own[k][k] += static_cast<float>(2 * mesh_.lambda * mesh_.anchor_stiffness[i]);
+    const double stiffness = anchor_stiffness(mesh_, loads_, static_cast<std::size_t>(i));
+    for (int k = 0; k < 3; ++k) own[k][k] += static_cast<float>(2 * mesh_.lambda * stiffness);
   }
 }
 
-void HessianAssembly::add_contacts(int part, float* panels) const {
-  for (const auto& [spot, contact, weight] : presses_[part]) {
-    const ContactSpring& row = loads_.contacts[contact];
-    const Matrix3d m = row.normal * row.normal.transpose() * (2 * mesh_.lambda * row.stiffness);
+void HessianAssembly::add_couplings(int part, float* panels) const {
+  for (const auto& [spot, number, weight] : couplings_[part]) {
+    const Matrix3d& m = matrices_[number];
     float* to = panels + spot.at;
     for (int j = 0; j < 3; ++j) add_column(to + j * spot.stride, column_of(weight * m.col(j)));
   }

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "engine/tissue/front_tree.h"
@@ -72,7 +73,10 @@ class HessianAssembly {
  private:
   void add_springs(int part, float* panels);
   void add_anchors(int part);
-  void add_contacts(int part, float* panels) const;
+  void add_line(const MuscleLine& muscle);
+  void couple(std::span<const int> node, std::span<const double> weight,
+              const Eigen::Matrix3d& matrix);
+  void add_couplings(int part, float* panels) const;
   void add_prisms(int part, float* panels);
   void add_diagonal(int part, float* panels) const;
 
@@ -80,10 +84,10 @@ class HessianAssembly {
   typedef float Column __attribute__((vector_size(4 * sizeof(float))));
   /// The diagonal entry of a node.
   using Own = std::array<Column, 3>;
-  /// Contribution of two nodes of a contact.
-  struct Press {
+  /// Contribution of two nodes of a contact or a muscle.
+  struct Coupling {
     HessianPattern::Spot spot;
-    int contact;
+    int matrix;
     double weight;
   };
 
@@ -92,7 +96,8 @@ class HessianAssembly {
   const MeshLoads& loads_;
   const Nodes& x_;
   const bool exact_;
-  std::array<std::vector<Press>, 3> presses_;  // of each part
+  std::vector<Eigen::Matrix3d> matrices_;           // of contacts and muscles
+  std::array<std::vector<Coupling>, 3> couplings_;  // of each part
   std::array<std::vector<Own>, 3>
       own_;  // contribution of each part's elements, by elimination index
 };

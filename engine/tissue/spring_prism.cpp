@@ -140,8 +140,9 @@ double SpringPrismEnergy::chunk_energy(int chunk, const Nodes& x, bool with_grad
   for (std::size_t i = anchors.first; i < anchors.last; ++i) {
     const int node = mesh_.anchor_node[i];
     const Vector3d d = x[node] - loads_.anchor_target[i];
-    spring_energy += mesh_.anchor_stiffness[i] * d.squaredNorm();
-    if (with_gradient) push(node, (2 * mesh_.anchor_stiffness[i]) * d);
+    const double stiffness = anchor_stiffness(mesh_, loads_, i);
+    spring_energy += stiffness * d.squaredNorm();
+    if (with_gradient) push(node, (2 * stiffness) * d);
   }
   const Range contacts = fraction(loads_.contacts.size(), chunk, chunks_);
   for (std::size_t i = contacts.first; i < contacts.last; ++i) {
@@ -152,6 +153,10 @@ double SpringPrismEnergy::chunk_energy(int chunk, const Nodes& x, bool with_grad
     for (int k = 0; with_gradient && k < row.count; ++k)
       push(row.node[k], (2 * row.stiffness * gap * row.weight[k]) * row.normal);
   }
+  const Range muscles = fraction(loads_.muscles.size(), chunk, chunks_);
+  for (std::size_t i = muscles.first; i < muscles.last; ++i)
+    spring_energy += with_gradient ? loads_.muscles[i].energy_and_gradient(x, push)
+                                   : loads_.muscles[i].energy(x);
   const Range forced = fraction(loads_.node_force.size(), chunk, chunks_);
   for (std::size_t i = forced.first; i < forced.last; ++i) {
     spring_energy -= loads_.node_force[i].dot(x[i]);
@@ -201,7 +206,7 @@ Objective::Curvature SpringPrismEnergy::chunk_curvature(int chunk, const Nodes& 
   double linear = 0;  // terms with exact, non-negative curvature
   const Range anchors = fraction(mesh_.anchor_node.size(), chunk, chunks_);
   for (std::size_t i = anchors.first; i < anchors.last; ++i)
-    linear += 2 * mesh_.anchor_stiffness[i] * d[mesh_.anchor_node[i]].squaredNorm();
+    linear += 2 * anchor_stiffness(mesh_, loads_, i) * d[mesh_.anchor_node[i]].squaredNorm();
   const Range contacts = fraction(loads_.contacts.size(), chunk, chunks_);
   for (std::size_t i = contacts.first; i < contacts.last; ++i) {
     const ContactSpring& row = loads_.contacts[i];
@@ -209,6 +214,9 @@ Objective::Curvature SpringPrismEnergy::chunk_curvature(int chunk, const Nodes& 
     const double speed = row.along(d);
     linear += 2 * row.stiffness * speed * speed;
   }
+  const Range muscles = fraction(loads_.muscles.size(), chunk, chunks_);
+  for (std::size_t i = muscles.first; i < muscles.last; ++i)
+    linear += loads_.muscles[i].curvature(x, d);
   const double lambda = mesh_.lambda;
   return {lambda * (springs.exact + linear) + (1 - lambda) * prisms.exact,
           lambda * (springs.gauss_newton + linear) + (1 - lambda) * prisms.gauss_newton};

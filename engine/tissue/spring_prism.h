@@ -8,6 +8,7 @@
 #include "engine/minimize/objective.h"
 #include "engine/tissue/contact_spring.h"
 #include "engine/tissue/element_batches.h"
+#include "engine/tissue/muscle_line.h"
 
 namespace condyle {
 
@@ -55,11 +56,17 @@ struct SpringPrismMesh {
 /// External loads and constraints at one time.
 struct MeshLoads {
   Nodes anchor_target;                  // one per anchor
+  std::vector<double> anchor_scale;     // of the stiffness, above 0; one per anchor, or empty for 1
   std::vector<ContactSpring> contacts;  // active or potential contacts
+  std::vector<MuscleLine> muscles;      // with the weight lambda
   /// Forces on the nodes, N; one per node, or empty. They have the weight lambda, as the springs
   /// have, so a spring under a force stretches by force / (2 stiffness) for any lambda.
   Nodes node_force;
 };
+
+inline double anchor_stiffness(const SpringPrismMesh& mesh, const MeshLoads& loads, std::size_t i) {
+  return mesh.anchor_stiffness[i] * (loads.anchor_scale.empty() ? 1 : loads.anchor_scale[i]);
+}
 
 /// Weight of the nodes along `down` (unit), 9.81 N/kg.
 Nodes weight_of_nodes(const SpringPrismMesh& mesh, const Eigen::Vector3d& down);
@@ -90,8 +97,8 @@ class SpringPrismEnergy final : public Objective {
   SpringPrismEnergy(const SpringPrismMesh& mesh, const MeshLoads& loads, int threads,
                     std::shared_ptr<const ElementBatches> batches = nullptr);
 
-  /// Energy, mJ: lambda sum k (l - l0)^2 + (1 - lambda) sum w (v - v0)^2, anchors, contacts and
-  /// node forces with the springs. Infinite where a prism has no positive volume.
+  /// Energy, mJ: lambda sum k (l - l0)^2 + (1 - lambda) sum w (v - v0)^2, anchors, contacts,
+  /// muscles and node forces with the springs. Infinite where a prism has no positive volume.
   double value(const Nodes& x) override;
   /// The same, with its gradient (N).
   double value_and_gradient(const Nodes& x, Nodes& gradient) override;

@@ -65,6 +65,21 @@ TEST_P(EachForm, DerivativesEqualCentralDifferencesFromAMillionthToAThousandMill
       row.stiffness = 0.5;
       loads.contacts.push_back(row);
     }
+    loads.anchor_scale.assign(set.mesh.anchor_node.size(), 0.3);
+    // Muscles in each part of their law: through tissue and from a fixed place, and a loop.
+    const MuscleLine::Point first{{5, 9, 13}, {0.3, 0.3, 0.4}}, middle{{40, 44}, {0.5, 0.5}},
+        last{{60, 64}, {0.25, 0.75}};
+    for (const double fraction : {1.1, 0.9, 0.5}) {
+      for (MuscleLine muscle : {MuscleLine{{first, middle, last}}, MuscleLine{{{}, middle, last}},
+                                MuscleLine{{first, middle, last, first}}}) {
+        if (muscle.points[0].node.empty()) muscle.points[0].fixed = 1.5 * x[5] + x[61];
+        const double length = muscle.length(x);
+        muscle.shortest = fraction * length;
+        muscle.stiffness = 0.7;
+        muscle.limit = muscle.stiffness * 0.3 * length;
+        loads.muscles.push_back(muscle);
+      }
+    }
     SpringPrismEnergy energy(set.mesh, loads, 1);
     Nodes g, up = x, down = x, g_up, g_down, d(x.size());
     ASSERT_TRUE(std::isfinite(energy.value_and_gradient(x, g))) << magnitude;

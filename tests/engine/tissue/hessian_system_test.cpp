@@ -25,6 +25,12 @@ struct Sample {
     std::uniform_real_distribution<double> entry(-0.2, 0.2);
     for (auto& p : x) p += Eigen::Vector3d(entry(random), entry(random), entry(random));
     for (auto& p : d) p = {entry(random), entry(random), entry(random)};
+    const auto& corner = set.mesh.prisms[40];
+    MuscleLine muscle{{{{corner[0], corner[1]}, {0.6, 0.4}}, {{corner[5]}, {1}}}};
+    muscle.shortest = 0.5 * muscle.length(x);
+    muscle.stiffness = 2;
+    muscle.limit = 0.3 * muscle.length(x);
+    loads.muscles.push_back(muscle);
   }
 };
 

@@ -1,0 +1,128 @@
+#include "engine/tissue/muscle_line.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "engine/minimize/minimize.h"
+#include "engine/tissue/hessian_factor.h"
+#include "engine/tissue/layered_mesh.h"
+
+namespace condyle {
+namespace {
+
+using Eigen::Vector3d;
+
+TEST(MuscleLine, PullsUpToItsLimitAndNeverPushes) {
+  MuscleLine muscle;
+  muscle.shortest = 40;
+  muscle.stiffness = 0.8;
+  muscle.limit = 4;
+  EXPECT_EQ(muscle.law(39).tension, 0);
+  EXPECT_EQ(muscle.law(39).energy, 0);
+  EXPECT_DOUBLE_EQ(muscle.law(42).tension, 1.6);
+  EXPECT_DOUBLE_EQ(muscle.law(45).tension, 4);
+  EXPECT_DOUBLE_EQ(muscle.law(80).tension, 4);
+  for (double length = 39; length < 47; length += 0.1) {  // the tension is the energy's slope
+    const double h = 1e-4,
+                 slope = (muscle.law(length + h).energy - muscle.law(length - h).energy) / (2 * h);
+    EXPECT_NEAR(muscle.law(length).tension, slope, 1e-4) << length;
+  }
+  muscle.limit = 0;  // at rest
+  EXPECT_EQ(muscle.law(80).tension, 0);
+  EXPECT_EQ(muscle.law(80).energy, 0);
+}
+
+/// A block of tissue on bone, with a muscle from a fixed place to its free skin.
+struct PulledBlock {
+  static constexpr int side = 7, sheets = 3;
+  Nodes rest;
+  SpringPrismMesh mesh;
+  MeshLoads loads;
+  int pulled = 0;
+
+  PulledBlock() {
+    std::vector<Eigen::Vector3i> triangles;
+    for (int j = 0; j < side; ++j)
+      for (int i = 0; i < side; ++i)
+        for (int s = 0; s < sheets; ++s) rest.emplace_back(8.0 * i, 8.0 * j, -5.0 * s);
+    for (int j = 0; j + 1 < side; ++j)
+      for (int i = 0; i + 1 < side; ++i) {
+        const int a = j * side + i;
+        triangles.emplace_back(a, a + 1, a + side + 1);
+        triangles.emplace_back(a, a + side + 1, a + side);
+      }
+    mesh = layered_mesh(triangles, sheets, rest, std::vector<LayerMaterial>(sheets - 1));
+    for (int c = 0; c < side * side; ++c) {
+      mesh.anchor_node.push_back(node_of(c, sheets - 1, sheets));
+      mesh.anchor_stiffness.push_back(1.0);
+      loads.anchor_target.push_back(rest[mesh.anchor_node.back()]);
+    }
+    pulled = node_of(side * side / 2, 0, sheets);
+  }
+  /// `excitation`: 0 to 1.
+  void excite(double excitation, double limit_N) {
+    const Vector3d origin = rest[pulled] + Vector3d(50, 0, 10);
+    MuscleLine muscle{{{.fixed = origin}, {.node = {pulled}, .weight = {1}}}};
+    const double length = (rest[pulled] - origin).norm();
+    muscle.shortest = (1 - 0.2 * excitation) * length;
+    muscle.stiffness = limit_N / (0.1 * length);
+    muscle.limit = excitation * limit_N;
+    loads.muscles = {muscle};
+  }
+  Nodes equilibrium(int* iterations = nullptr) const {
+    Nodes x = rest;
+    SpringPrismEnergy energy(mesh, loads, 1);
+    MinimizeSettings settings;
+    settings.tolerance_mm = 1e-6;
+    settings.max_iterations = 500;
+    const HessianFactor factor(mesh, loads, sheets, x);
+    const MinimizeResult result = minimize(energy, factor, settings, x);
+    EXPECT_TRUE(result.converged());
+    if (iterations) *iterations = result.iterations;
+    return x;
+  }
+};
+
+TEST(MuscleLine, WithoutExcitationRestStaysRestBitForBit) {
+  PulledBlock block;
+  const Nodes without = block.equilibrium();
+  block.excite(0, 3);
+  const Nodes with = block.equilibrium();
+  for (std::size_t i = 0; i < with.size(); ++i) EXPECT_EQ(with[i], without[i]);
+}
+
+TEST(MuscleLine, DrawsTheTissueTowardsItsOriginWithItsTension) {
+  double last = 0;
+  for (const double excitation : {0.25, 0.5, 1.0}) {
+    PulledBlock block;
+    block.excite(excitation, 0.2);
+    const Nodes x = block.equilibrium();
+    const Vector3d way = x[block.pulled] - block.rest[block.pulled];
+    const MuscleLine& muscle = block.loads.muscles.front();
+    const Vector3d span = muscle.points[1].at(x) - muscle.points[0].fixed;
+    EXPECT_GT(way.dot(-span.normalized()), last + 0.05) << excitation;
+    last = way.dot(-span.normalized());
+    // The anchors hold what the muscle pulls with.
+    Vector3d held = Vector3d::Zero();
+    for (std::size_t i = 0; i < block.mesh.anchor_node.size(); ++i)
+      held += 2 * block.mesh.anchor_stiffness[i] *
+              (block.loads.anchor_target[i] - x[block.mesh.anchor_node[i]]);
+    const double tension = muscle.law(span.norm()).tension;
+    EXPECT_NEAR(held.dot(span.normalized()), tension, 1e-4 * tension);
+    EXPECT_LE(tension, muscle.limit);
+  }
+}
+
+/// However strong, it shortens no further than to its shortest length.
+TEST(MuscleLine, ShortensWithinItsBound) {
+  PulledBlock block;
+  block.excite(0.25, 500);
+  const Nodes x = block.equilibrium();
+  const MuscleLine& muscle = block.loads.muscles.front();
+  EXPECT_GE(muscle.length(x), muscle.shortest);
+  EXPECT_LT(muscle.length(x), 1.1 * muscle.shortest);
+}
+
+}  // namespace
+}  // namespace condyle
