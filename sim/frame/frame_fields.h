@@ -50,6 +50,7 @@ template <class Visitor, class Tissue>
 void visit_tissue(Tissue& tissue, Visitor&& visit) {
   visit.values(tissue.nodes);
   visit_poses(tissue.X_CB, visit);
+  visit_list(tissue.excitation, visit, [&](auto& value) { visit(value); });
   visit(tissue.iterations);
   visit(tissue.evaluations);
   visit(tissue.converged);

@@ -15,7 +15,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little);
 constexpr std::string_view magic = "CONDYLEF";
-constexpr std::uint32_t frame_version = 1;
+constexpr std::uint32_t frame_version = 2;
 constexpr std::size_t max_frame_bytes = std::size_t{1} << 30;
 
 class Writer {

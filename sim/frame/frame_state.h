@@ -20,7 +20,8 @@ struct StepInput {
   // Target pose of each body in its parent's frame, set by the motion, a hand or a plan; missing
   // ones are at rest.
   std::vector<Pose> X_PB_target = {};
-  bool obey_contact = true;  // false plays a recording unaltered
+  std::vector<double> excitation = {};  // of the muscles of the face; missing ones are relaxed
+  bool obey_contact = true;             // false plays a recording unaltered
   // with contact: large distances may be lower bounds (ContactModel::slide)
   bool bound_far = false;
 };

@@ -12,6 +12,7 @@ struct TissueState {
   std::vector<Eigen::Vector3d> nodes;  // mm, in the model's node order; empty without tissue
   // poses of the bodies for which the nodes were solved; missing ones are at rest
   std::vector<Pose> X_CB;
+  std::vector<double> excitation = {};  // of the muscles of the face; missing ones are relaxed
   int iterations = 0;
   int evaluations = 0;    // of energy or gradient
   bool converged = true;  // the minimizer and the contact planes, see contact_error_mm

@@ -62,6 +62,9 @@ struct Motion {
   // Of a muscle-driven motion: names and states of the muscles at a time.
   std::vector<std::string> muscle_names = {};
   std::function<MuscleStates(double time_s)> muscles = {};
+  // 0 to 1 at a time, of each muscle of the face; empty: they are relaxed.
+  std::function<std::vector<double>(double time_s)> expression = {};
+  std::string expression_name = {};
   // X_CH at a time, rest to now, where muscles attach to a hyoid; empty: it is fixed.
   std::function<Pose(double time_s)> hyoid = {};
   std::optional<RecordingFacts> recording = {};  // of a file

@@ -8,6 +8,7 @@
 #include "sim/frame/state_hash.h"
 #include "sim/motion/closed_position.h"
 #include "sim/motion/measure_pose.h"
+#include "sim/muscles/default_face_muscles.h"
 #include "sim/tissue/lips.h"
 
 namespace condyle {
@@ -22,6 +23,7 @@ Scene make_scene(Case patient, const SimulatorSettings& settings, const Progress
     report(progress, "building the soft tissue", 0.3);
     TissueSettings of_tissue = settings.tissue_model;
     of_tissue.threads = settings.threads;
+    of_tissue.face_muscles = default_face_muscles(patient);
     tissue = build_tissue(patient, of_tissue, progress);
   }
   report(progress, "building the soft tissue", 1.0);
@@ -68,6 +70,7 @@ Scene edited_scene(const Scene& before, Case patient, const SimulatorSettings& s
     report(progress, "building the soft tissue", 0.3);
     TissueSettings of_tissue = settings.tissue_model;
     of_tissue.threads = settings.threads;
+    of_tissue.face_muscles = default_face_muscles(patient);
     const bool unchanged = before.tissue && same_for_tissue(before.patient, patient);
     tissue = unchanged ? before.tissue : build_tissue(patient, of_tissue, progress);
   }
@@ -111,7 +114,8 @@ FrameState step(const Scene& scene, const FrameState& previous, const StepInput&
     const StageTimer timer(now.times, Stage::tissue);
     TissueBudget budget = settings.tissue_budget;
     budget.threads = settings.threads;
-    now.tissue = solve_tissue(*scene.tissue, previous.tissue, now.poses.X_CB, budget, warm);
+    now.tissue = solve_tissue(*scene.tissue, previous.tissue, now.poses.X_CB, budget, warm,
+                              input.excitation);
   }
   {
     const StageTimer timer(now.times, Stage::measures);
@@ -145,6 +149,7 @@ FrameState Playback::step_to(double time_s, const FrameState& from, TissueWarmSt
     input.X_PB_target = motion_target_poses(scene_.patient.bodies, motion_.target(time_s),
                                             motion_.pieces ? motion_.pieces(time_s) : X_PB_target_);
   }
+  if (motion_.expression) input.excitation = motion_.expression(time_s);
   FrameState next = step(scene_, from, input, settings_, warm);
   if (motion_.muscles) {
     next.muscles = motion_.muscles(time_s);

@@ -212,6 +212,7 @@ std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const Tissu
   report(progress, "soft tissue: displayed face", 0.8);
   model->display = display.get();
 
+  model->muscles = muscles_in_mesh(*mesh, model->support, settings.face_muscles);
   summary.nodes = mesh->elements.node_count;
   summary.springs =
       static_cast<int>(mesh->elements.spring_a.size() + mesh->elements.anchor_node.size());
@@ -224,5 +225,11 @@ std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const Tissu
 }
 
 const TissueSummary& summary(const TissueModel& model) { return model.summary; }
+const std::vector<FaceMuscle>& face_muscles_of(const TissueModel& model) {
+  return model.muscles.muscles;
+}
+std::vector<double> face_muscle_lengths(const TissueModel& model, const TissueState& state) {
+  return muscle_lengths(model.muscles, state.nodes, poses_from_mesh(model, state.X_CB));
+}
 
 }  // namespace condyle

@@ -36,7 +36,7 @@ std::vector<MeshLine> prism_lines(const TissueModel& model, const TissueState& s
 }
 
 std::vector<BoneSpringLine> bone_spring_lines(const TissueModel& model, const TissueState& state) {
-  const MeshLoads loads = loads_at(model, state.X_CB);
+  const MeshLoads loads = loads_at(model, state.X_CB, state.excitation);
   std::vector<BoneSpringLine> lines;
   for (std::size_t i = 0; i < loads.anchor_target.size(); ++i)
     lines.push_back({{state.nodes[model.mesh->elements.anchor_node[i]].cast<float>(),

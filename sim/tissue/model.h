@@ -9,6 +9,7 @@
 #include "engine/tissue/hessian_factor.h"
 #include "engine/tissue/spring_prism.h"
 #include "sim/tissue/body_weights.h"
+#include "sim/tissue/muscle_lines.h"
 #include "sim/tissue/opening_path.h"
 #include "sim/tissue/oral_fissure.h"
 #include "sim/tissue/skin_region.h"
@@ -82,13 +83,16 @@ struct TissueModel {
   std::shared_ptr<const FaceDisplay> display;
   std::shared_ptr<const PlannedRest> planned;  // null: at rest as the mesh
   TissueSummary summary;
+  TissueMuscles muscles;
 };
 
 /// Poses of the bodies from the mesh's rest, of poses from the model's.
 std::vector<Pose> poses_from_mesh(const TissueModel& model, std::span<const Pose> X_CB);
 
-/// Loads of the bones on the tissue with the bodies at X_CB.
-MeshLoads loads_at(const TissueModel& model, std::span<const Pose> X_CB);
+/// Loads of the bones and muscles on the tissue with the bodies at X_CB. `excitation`: of each
+/// muscle of the face, or none.
+MeshLoads loads_at(const TissueModel& model, std::span<const Pose> X_CB,
+                   std::span<const double> excitation = {});
 
 /// The same, with the contacts of nodes at x.
 MeshLoads contact_loads(const TissueModel& model, std::span<const Pose> X_CB, const Nodes& x);

@@ -25,17 +25,23 @@ std::vector<Pose> poses_from_mesh(const TissueModel& model, std::span<const Pose
   return from_mesh;
 }
 
-MeshLoads loads_at(const TissueModel& model, std::span<const Pose> X_CB_now) {
+MeshLoads loads_at(const TissueModel& model, std::span<const Pose> X_CB_now,
+                   std::span<const double> excitation) {
   const std::vector<Pose> X_CB = poses_from_mesh(model, X_CB_now);
   const auto& [elements, rest] = std::tie(model.mesh->elements, model.mesh->rest);
   const TissueSupport& support = model.support;
   MeshLoads loads;
+  if (!excitation.empty()) {
+    loads.muscles = muscle_pull(model.muscles, excitation, X_CB);
+    loads.anchor_scale = anchor_scales(model.muscles, excitation, elements.anchor_node.size());
+  }
   loads.anchor_target.resize(elements.anchor_node.size());
   for (std::size_t i = 0; i < elements.anchor_node.size(); ++i) {
     const Vector3d& X = rest[elements.anchor_node[i]];
     loads.anchor_target[i] = X + carried_by(support.anchor[i], X_CB, X);
     if (!support.anchor_offset.empty())
-      loads.anchor_target[i] += turned_by(support.anchor[i], X_CB, support.anchor_offset[i]);
+      loads.anchor_target[i] += turned_by(support.anchor[i], X_CB, support.anchor_offset[i]) /
+                                (loads.anchor_scale.empty() ? 1 : loads.anchor_scale[i]);
   }
   loads.node_force = support.node_force;
   if (support.held_force.empty()) return loads;
@@ -179,15 +185,38 @@ TissueState previous_state(const TissueState& previous, const TissueState& faile
   return state;
 }
 
+/// Between two excitations, without them: muscles that pull at once would tear tissue through its
+/// contacts.
+std::vector<std::vector<double>> excitation_steps(std::span<const double> from,
+                                                  std::span<const double> to) {
+  constexpr double step = 0.2;
+  const auto of = [](std::span<const double> list, std::size_t i) {
+    return i < list.size() ? list[i] : 0;
+  };
+  const std::size_t muscles = std::max(from.size(), to.size());
+  double most = 0;
+  for (std::size_t i = 0; i < muscles; ++i)
+    most = std::max(most, std::abs(of(to, i) - of(from, i)));
+  const int count = static_cast<int>(std::ceil(most / step));
+  std::vector<std::vector<double>> steps;
+  for (int k = 1; k < count; ++k) {
+    std::vector<double>& between = steps.emplace_back();
+    for (std::size_t i = 0; i < muscles; ++i)
+      between.push_back(of(from, i) + (of(to, i) - of(from, i)) * k / count);
+  }
+  return steps;
+}
+
 /// One step to finite poses.
 TissueState solve_step(const TissueModel& model, const TissueState& previous,
-                       std::span<const Pose> X_CB, const TissueBudget& budget,
-                       TissueWarmStart& warm) {
+                       std::span<const Pose> X_CB, std::span<const double> excitation,
+                       const TissueBudget& budget, TissueWarmStart& warm) {
   const auto& [mesh, contact] = std::tie(*model.mesh, *model.contact);
   const std::vector<Pose> from_mesh = poses_from_mesh(model, X_CB);
-  MeshLoads loads = loads_at(model, X_CB);
+  MeshLoads loads = loads_at(model, X_CB, excitation);
   TissueState state;
   state.X_CB.assign(X_CB.begin(), X_CB.end());
+  state.excitation.assign(excitation.begin(), excitation.end());
   state.nodes = model.opening.extrapolated(previous.nodes, model.support.node, previous.X_CB, X_CB);
   if (count_inverted(mesh.elements, state.nodes) > 0) state.nodes = previous.nodes;
 
@@ -238,19 +267,23 @@ TissueState solve_step(const TissueModel& model, const TissueState& previous,
 
 TissueState solve_tissue(const TissueModel& model, const TissueState& previous,
                          std::span<const Pose> X_CB, const TissueBudget& budget,
-                         TissueWarmStart& warm) {
+                         TissueWarmStart& warm, std::span<const double> excitation) {
   assert(previous.nodes.size() == model.mesh->rest.size());
   assert(budget.tolerance_mm > 0 && budget.max_iterations > 0);
   if (!all_finite(X_CB)) return previous_state(previous, {});
   TissueState state = previous;
   TissueWarmStart reached = warm;
   int iterations = 0, evaluations = 0;
-  for (const auto& X_CB_step : pose_steps(model, previous.X_CB, X_CB)) {
-    state = solve_step(model, state, X_CB_step, budget, reached);
+  const auto go_to = [&](std::span<const Pose> X_CB_step, std::span<const double> of_step) {
+    state = solve_step(model, state, X_CB_step, of_step, budget, reached);
     state.iterations = iterations += state.iterations;
     state.evaluations = evaluations += state.evaluations;
-    if (state.reused) return previous_state(previous, state);
-  }
+    return !state.reused;
+  };
+  for (const auto& of_step : excitation_steps(previous.excitation, excitation))
+    if (!go_to(previous.X_CB, of_step)) return previous_state(previous, state);
+  for (const auto& X_CB_step : pose_steps(model, previous.X_CB, X_CB))
+    if (!go_to(X_CB_step, excitation)) return previous_state(previous, state);
   warm = std::move(reached);
   return state;
 }

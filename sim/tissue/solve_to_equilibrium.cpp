@@ -45,7 +45,7 @@ TissueState solve_to_equilibrium(const TissueModel& model, const TissueState& st
                                      .contact_firmness = firmness,
                                      .relaxed_contact = true,
                                      .threads = threads},
-                                    warm);
+                                    warm, reached.excitation);
     if (next.reused) break;
     const double moved = largest_displacement(reached.nodes, next.nodes);
     // If each round shortens the displacement by a factor, the remaining sum is a geometric series.

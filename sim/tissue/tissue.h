@@ -8,6 +8,7 @@
 
 #include "engine/core/progress.h"
 #include "sim/case/case.h"
+#include "sim/case/face_muscle.h"
 #include "sim/frame/tissue_state.h"
 #include "sim/tissue/body_weights.h"
 
@@ -20,8 +21,9 @@ struct TissueSettings {
   /// Approximate number per sheet. A finer mesh models the same tissue: attachment per area is the
   /// same, and layers are divided until springs fill them evenly (split_layers).
   int surface_nodes = 520;
-  TissuePlan plan = {};  // takes precedence over the case's own
-  int threads = 2;       // of the builder; the model is bit-identical for any number
+  TissuePlan plan = {};                       // takes precedence over the case's own
+  std::vector<FaceMuscle> face_muscles = {};  // without excitation they change nothing
+  int threads = 2;  // of the builder; the model is bit-identical for any number
 };
 
 /// Limits of one frame's minimization.
@@ -63,6 +65,9 @@ std::shared_ptr<const TissueModel> build_tissue(const Case& patient,
                                                 const TissueSettings& settings = {},
                                                 const Progress& progress = {});
 const TissueSummary& summary(const TissueModel& model);
+const std::vector<FaceMuscle>& face_muscles_of(const TissueModel& model);
+/// Length of each muscle of the face, the mean of its lines, mm.
+std::vector<double> face_muscle_lengths(const TissueModel& model, const TissueState& state);
 
 /// The unmoved tissue.
 TissueState rest_tissue(const TissueModel& model);
@@ -80,10 +85,11 @@ struct TissueWarmStart {
 /// The tissue of minimum energy (quasi-static, without inertia) with the bodies at X_CB, each a
 /// pose in the cranium's frame from rest to now, by number; bodies beyond the end are at rest.
 /// Starts from `previous`, moved with the bodies. `warm` belongs to the solve that gave `previous`;
-/// it is replaced. status: `converged` and `reused` of the result.
+/// it is replaced. `excitation`: 0 to 1, of each muscle of the face; missing ones are relaxed.
+/// status: `converged` and `reused` of the result.
 TissueState solve_tissue(const TissueModel& model, const TissueState& previous,
                          std::span<const Pose> X_CB, const TissueBudget& budget,
-                         TissueWarmStart& warm);
+                         TissueWarmStart& warm, std::span<const double> excitation = {});
 /// The same without a warm start.
 TissueState solve_tissue(const TissueModel& model, const TissueState& previous,
                          std::span<const Pose> X_CB, const TissueBudget& budget = {});

@@ -108,7 +108,7 @@ TEST(FrameFile, DamagedFilesAreRefusedWithTheirName) {
   EXPECT_NE(refusal("PNG").find("is not a Condyle frame"), std::string::npos);
   std::string newer = bytes;
   newer[8] = 7;
-  EXPECT_NE(refusal(newer).find("is 7; this program reads version 1"), std::string::npos);
+  EXPECT_NE(refusal(newer).find("is 7; this program reads version 2"), std::string::npos);
   constexpr std::size_t state_begins = 8 + 4 + 6 * 8;
   for (std::size_t at = state_begins; at + 16 < bytes.size(); at += 7) {
     std::string flipped = bytes;

@@ -1,0 +1,57 @@
+#include "sim/muscles/expression.h"
+
+#include <gtest/gtest.h>
+
+#include "engine/core/error.h"
+#include "engine/core/files.h"
+
+namespace condyle {
+namespace {
+
+std::vector<FaceMuscle> pair_of_muscles() {
+  return {{.name = "left_zygomaticus_major", .kind = "zygomaticus_major", .lines = {}},
+          {.name = "right_zygomaticus_major", .kind = "zygomaticus_major", .lines = {}}};
+}
+
+std::string refusal(const std::string& spec) {
+  try {
+    make_expression(spec, pair_of_muscles());
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "none";
+}
+
+TEST(Expression, ABuiltinOneGrowsToItsStrengthOnItsSide) {
+  const Expression smile = make_expression("smile:0.8:left", pair_of_muscles());
+  EXPECT_EQ(smile.at(0), (std::vector<double>{0, 0}));
+  EXPECT_NEAR(smile.at(0.25)[0], 0.4, 1e-12);
+  EXPECT_NEAR(smile.at(3)[0], 0.8, 1e-12);
+  EXPECT_EQ(smile.at(3)[1], 0);
+}
+
+TEST(Expression, BadOnesAreRefusedByNameAndValue) {
+  EXPECT_NE(refusal("smirk").find("smirk"), std::string::npos);
+  EXPECT_NE(refusal("smirk").find("open-mouth-smile"), std::string::npos);
+  EXPECT_NE(refusal("smile:1.5").find("0 to 1, not 1.5"), std::string::npos);
+  EXPECT_NE(refusal("smile:nan"), "none");
+  EXPECT_NE(refusal("smile:1:up").find("left|right"), std::string::npos);
+  EXPECT_THROW(check_expression("no-such-file.csv"), InputError);
+}
+
+TEST(Expression, AFileGivesMusclesOrBothSides) {
+  const auto file = std::filesystem::temp_directory_path() / "condyle-test-expression.csv";
+  write_file(file, "time_s,zygomaticus_major\n2,0\n3,1\n");
+  const Expression both = make_expression(file.string(), pair_of_muscles());
+  EXPECT_EQ(both.duration_s, 1);
+  EXPECT_NEAR(both.at(0.5)[0], 0.5, 1e-12);
+  EXPECT_EQ(both.at(0.5)[0], both.at(0.5)[1]);
+  write_file(file, "time_s,left_zygomaticus_major\n0,0\n1,1.2\n");
+  EXPECT_NE(refusal(file.string()).find("1.2"), std::string::npos);
+  EXPECT_NE(refusal(file.string()).find("line 3"), std::string::npos);
+  write_file(file, "time_s,masseter\n0,0\n1,1\n");
+  EXPECT_NE(refusal(file.string()).find("masseter"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace condyle
