@@ -5,7 +5,9 @@
 
 #include "engine/core/error.h"
 #include "sim/case/pair_rules.h"
+#include "sim/muscles/default_face_muscles.h"
 #include "sim/muscles/default_muscles.h"
+#include "sim/muscles/expression.h"
 #include "sim/operated/graft_path.h"
 #include "sim/operated/operated_scene.h"
 #include "sim/plan/plan_file.h"
@@ -87,6 +89,17 @@ void add_motion(CLI::App& command, MotionOptions& motion) {
   add_plan_file(command, motion.plan);
 }
 
+void add_expression(CLI::App& command, MotionOptions& motion) {
+  command
+      .add_option(
+          "--expression", motion.expression,
+          "Expression of the face, alone or during the motion: " +
+              CLI::detail::join(builtin_expressions(), ", ") +
+              ", each with a strength from 0 to 1 (smile:0.8) and a side (smile:1:left); or "
+              "excitations of its muscles over time (*.csv): condyle help muscles")
+      ->type_name("NAME[:STRENGTH[:SIDE]]|FILE");
+}
+
 void add_plan_file(CLI::App& command, std::filesystem::path& plan) {
   command
       .add_option("--plan", plan,
@@ -144,7 +157,14 @@ SimulatorSettings simulator_settings(const MotionOptions& options, const CommonO
 }
 
 void check_motion(const MotionOptions& options) {
-  if (!is_insertion_path(options.motion))
+  if (!options.expression.empty()) {
+    check_expression(options.expression);
+    if (!options.tissue.simulated)
+      throw InputError("--expression " + options.expression + ": needs the soft tissue");
+  }
+  if (options.motion.empty()) {
+    if (options.expression.empty()) throw InputError("--motion is required, or --expression");
+  } else if (!is_insertion_path(options.motion))
     check_motion(options.motion, options.settings, options.muscles);
   else if (options.plan.empty())
     throw InputError("--motion " + options.motion + ": needs a --plan with a graft");
@@ -152,14 +172,42 @@ void check_motion(const MotionOptions& options) {
 }
 
 void check_motion(const MotionOptions& options, const Case& patient) {
-  check_excitations(options.motion, patient);
+  if (!options.motion.empty()) check_excitations(options.motion, patient);
+  if (options.expression.empty()) return;
+  if (const std::string mark = missing_face_landmark(patient); !mark.empty())
+    throw InputError("--expression " + options.expression +
+                     ": the patient has no muscles of the face: the landmark " + mark +
+                     " is missing");
 }
 
-Motion motion_of(const MotionOptions& options, const Scene& scene, int threads) {
+namespace {
+
+Motion jaw_motion_of(const MotionOptions& options, const Scene& scene, int threads) {
+  if (options.motion.empty())
+    return {.name = "rest",
+            .duration_s = options.settings.duration_s,
+            .recorded = false,
+            .target = [](double) { return Pose{}; },
+            .notes = {}};
+
   if (is_insertion_path(options.motion))
     return insertion_path_motion(options.motion, scene, options.settings.duration_s, threads);
   return motion_of(options.motion, scene.patient, scene.contacts, options.settings, options.muscles,
                    threads);
+}
+
+}  // namespace
+
+Motion motion_of(const MotionOptions& options, const Scene& scene, int threads) {
+  Motion motion = jaw_motion_of(options, scene, threads);
+  if (options.expression.empty()) return motion;
+  if (!scene.tissue)
+    throw InputError("--expression " + options.expression + ": the patient has no face");
+  const Expression expression = make_expression(options.expression, face_muscles_of(*scene.tissue));
+  if (motion.duration_s <= 0) motion.duration_s = std::max(expression.duration_s, 0.2);
+  motion.expression = [expression](double time_s) { return expression.at(time_s); };
+  motion.expression_name = options.expression;
+  return motion;
 }
 
 }  // namespace condyle

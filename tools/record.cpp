@@ -171,7 +171,7 @@ CLI::App& add_recording(Commands& commands, const char* name, const char* what, 
     return run_record(*options, common);
   });
   add_motion(command, options->motion);
-  command.get_option("--motion")->required();
+  add_expression(command, options->motion);
   command.add_option("--out", options->out, "Folder for the results")
       ->type_name("FOLDER")
       ->required();

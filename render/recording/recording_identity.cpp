@@ -41,13 +41,16 @@ std::uint64_t case_hash(const Case& patient) {
   return hash;
 }
 
-/// Hash of every pose that the recording uses: at the fixed steps and at the frames.
+/// Hash of every pose and expression that the recording uses: at the fixed steps and at the frames.
 std::uint64_t motion_hash(const Motion& motion, std::span<const double> times, double step_s) {
   std::uint64_t hash = hash_start;
   const auto add = [&](double time_s) {
     const Pose pose = motion.target(time_s);
     hash = hash_bytes(pose.R.coeffs().data(), 4 * sizeof(double), hash);
     hash = hash_bytes(pose.t.data(), 3 * sizeof(double), hash);
+    if (!motion.expression) return;
+    const std::vector<double> excitation = motion.expression(time_s);
+    hash = hash_bytes(excitation.data(), excitation.size() * sizeof(double), hash);
   };
   for (int i = 0; i * step_s <= motion.duration_s; ++i) add(i * step_s);
   for (const double time_s : times) add(time_s);

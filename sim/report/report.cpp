@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numeric>
+#include <utility>
 
 #include "sim/frame/part_names.h"
+#include "sim/report/expression_findings.h"
 
 namespace condyle {
 namespace {
@@ -195,6 +198,11 @@ void MotionReport::add(const FrameState& frame) {
     samples_.back().face.clear();
   }
   iterations_.push_back(frame.tissue.iterations);
+  const auto strength = [](const TissueState& tissue) {
+    return std::accumulate(tissue.excitation.begin(), tissue.excitation.end(), 0.0);
+  };
+  if (const double now = strength(frame.tissue); now > 0 && now >= strength(expressed_))
+    expressed_ = frame.tissue;
   for (std::size_t i = 0; i < stage_names.size(); ++i)
     stage_ms_[std::string(stage_names[i])].push_back(frame.times.ms[i]);
   ++frames_;
@@ -215,10 +223,17 @@ Json MotionReport::motion_json() const {
   return json;
 }
 
+std::vector<Finding> MotionReport::all_findings() const {
+  std::vector<Finding> found = findings(scene_, motion_, series_);
+  for (Finding& finding : expression_findings(scene_, motion_, expressed_))
+    found.push_back(std::move(finding));
+  return found;
+}
+
 /// Findings, and those outside their reference range, prescribed ones too.
 void MotionReport::add_findings(Json& json) const {
   Json list = Json::array(), outside = Json::array();
-  for (const auto& finding : findings(scene_, motion_, series_)) {
+  for (const auto& finding : all_findings()) {
     list.push_back(json_of(finding));
     if (!finding.within()) outside.push_back(outside_text(finding));
   }
@@ -408,17 +423,17 @@ std::string MotionReport::text() const {
                       max_rotation_deg_, left_travel_mm_, right_travel_mm_);
   int emergent = 0, within = 0, inputs = 0;
   std::string outside;
-  for (const auto& finding : findings(scene_, motion_, series_)) {
+  for (const auto& finding : all_findings()) {
     if (!finding.banded()) continue;
     if (!finding.within()) outside += "  " + outside_text(finding) + "\n";
     ++(finding.input ? inputs : emergent);
     within += !finding.input && finding.within();
   }
-  if (emergent + inputs > 0)
-    text += fmt::format(
-        "{} of {} emergent quantities are within their reference ranges{}\n{}", within, emergent,
-        inputs > 0 ? fmt::format("; {} more follow from the inputs in any anatomy", inputs) : "",
-        outside);
+  if (emergent > 0)
+    text += fmt::format("{} of {} emergent quantities are within their reference ranges{}\n",
+                        within, emergent,
+                        inputs > 0 ? fmt::format("; {} more follow from the inputs", inputs) : "");
+  text += outside;
   for (const auto& warning : physiology_warnings(series_)) text += "warning: " + warning + "\n";
   text += contact_text();
   const bool penetrates = std::any_of(pairs_.begin(), pairs_.end(), [](const PairRecord& record) {

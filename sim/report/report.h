@@ -37,6 +37,7 @@ class MotionReport {
 
  private:
   nlohmann::ordered_json motion_json() const;
+  std::vector<Finding> all_findings() const;
   void add_findings(nlohmann::ordered_json& json) const;
   nlohmann::ordered_json contact_json() const;
   nlohmann::ordered_json tissue_json() const;
@@ -59,7 +60,8 @@ class MotionReport {
   double contact_deviation_mm_ =
       0;  // largest deviation of the incisal point from the prescribed motion, due to contact
   std::vector<PairRecord> pairs_;
-  FrameState widest_;  // frame of largest opening
+  TissueState expressed_;  // of the frame with the strongest expression
+  FrameState widest_;      // frame of largest opening
   int widest_frame_ = 0;
   std::vector<FrameState>
       samples_;  // a few frames spread over the motion, for the solve without warm start

@@ -1,0 +1,68 @@
+// Expressions of the face on the command line.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "tests/support/program.h"
+
+namespace condyle::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST(Expression, ASmileIsRecordedAndMeasured) {
+  const Folder folder;
+  const std::string out = folder / "out";
+  const std::vector<std::string> smile = {"record",  "--expression", "smile", "--frames",
+                                          "2",       "--camera",     "front", "--size",
+                                          "200x200", "--out",        out};
+  Outcome done = condyle(smile);
+  ASSERT_EQ(done.code, 0) << done.err;
+  EXPECT_NE(read_text(fs::path(out) / "frames/000000.png"),
+            read_text(fs::path(out) / "frames/000001.png"));
+  const auto report = nlohmann::json::parse(read_text(fs::path(out) / "report.json"));
+  int corners = 0;
+  for (const auto& finding : report["findings"]) {
+    const std::string quantity = finding["quantity"];
+    if (quantity.find("corner of the mouth: displacement") == std::string::npos) continue;
+    ++corners;
+    EXPECT_GT(double(finding["value"]), 5);
+    EXPECT_EQ(finding["emergent"], false) << "forces were chosen for it";
+  }
+  EXPECT_EQ(corners, 2);
+  // The pictures of another expression are not mixed with these.
+  std::vector<std::string> other = smile;
+  other[2] = "sad";
+  other.emplace_back("--resume");
+  done = condyle(other);
+  EXPECT_EQ(done.code, 2);
+  EXPECT_NE(done.err.find("motion"), std::string::npos) << done.err;
+}
+
+TEST(Expression, WrongOnesAreRefused) {
+  const Folder folder;
+  const auto expect_refused = [&](const std::vector<std::string>& of_expression,
+                                  const char* words) {
+    std::vector<std::string> arguments = {"run", "--out", folder / "out"};
+    arguments.insert(arguments.end(), of_expression.begin(), of_expression.end());
+    const Outcome done = condyle(arguments);
+    EXPECT_EQ(done.code, 2) << done.err;
+    EXPECT_NE(done.err.find(words), std::string::npos) << done.err;
+  };
+  expect_refused({}, "--motion is required");
+  expect_refused({"--expression", "smirk"}, "there is no such expression");
+  expect_refused({"--expression", "smile:2"}, "0 to 1, not 2");
+  expect_refused({"--expression", "smile:1:up"}, "left|right");
+  expect_refused({"--expression", "smile", "--no-tissue"}, "needs the soft tissue");
+  expect_refused({"--expression", folder / "none.csv"}, "no such file");
+  write_text(folder / "high.csv", "time_s,zygomaticus_major\n0,0\n1,1.5\n");
+  expect_refused({"--expression", folder / "high.csv"}, "line 3, zygomaticus_major");
+  write_text(folder / "other.csv", "time_s,masseter\n0,0\n1,1\n");
+  expect_refused({"--expression", folder / "other.csv"}, "is not a muscle of the face");
+  write_text(folder / "empty.csv", "");
+  expect_refused({"--expression", folder / "empty.csv"}, "is empty");
+}
+
+}  // namespace
+}  // namespace condyle::test
