@@ -78,13 +78,15 @@ JawJoints::JawJoints(const Case& patient, const MotionParameters& parameters, Jo
     Side& joint = sides_[which == JawSide::left ? 0 : 1];
     const auto inclination =
         which == JawSide::left ? parameters.inclination_left_deg : parameters.inclination_right_deg;
+    if (surfaces_) {
+      joint.gap.seated_mm = parameters.disc_gap_mm.value_or(surfaces_->rest_gap_mm(which));
+      joint.gap.front_mm =
+          parameters.disc_gap_front_mm.value_or(std::min(joint.gap.seated_mm, usual_front_gap_mm));
+    }
     if (inclination) {
       joint.path = inclined_path(*inclination, parameters.path_shape.value_or(1));
       given = true;
     } else if (surfaces_) {
-      joint.gap.seated_mm = parameters.disc_gap_mm.value_or(surfaces_->rest_gap_mm(which));
-      joint.gap.front_mm =
-          parameters.disc_gap_front_mm.value_or(std::min(joint.gap.seated_mm, usual_front_gap_mm));
       const double widest =
           reach == JointReach::aside ? 0.5 + side_shift_mm_ + 14 * bennett_slope_ : 0;
       joint.table.emplace(*surfaces_, which,
