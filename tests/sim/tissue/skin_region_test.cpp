@@ -4,19 +4,21 @@
 
 #include <algorithm>
 
+#include "engine/mesh/measure.h"
 #include "engine/mesh/topology.h"
 #include "tests/sim/tissue/plain_patient.h"
 
 namespace condyle::test {
 namespace {
 
-std::size_t borders(const Case& patient) {
+TriMesh region_of(const Case& patient) {
   std::vector<std::string> notes;
-  return border_loops(cut_region(patient.find(Role::face)->mesh, patient.landmarks,
-                                 read_anatomy(patient, notes), notes)
-                          .mesh)
-      .size();
+  return cut_region(patient.find(Role::face)->mesh, patient.landmarks, read_anatomy(patient, notes),
+                    notes)
+      .mesh;
 }
+
+std::size_t borders(const Case& patient) { return border_loops(region_of(patient)).size(); }
 
 /// The region ends below the eyes, at z 5.5 mm here.
 TEST(SkinRegion, ABumpBelowItsBorderLeavesNoHole) {
@@ -31,6 +33,7 @@ TEST(SkinRegion, ABumpBelowItsBorderLeavesNoHole) {
       }
   ASSERT_EQ(bumps, 1);
   EXPECT_EQ(borders(patient), 2u);
+  EXPECT_LT(bounding_box(region_of(patient)).high.z(), 6) << "the bump, and nothing else above";
 }
 
 }  // namespace
