@@ -68,6 +68,8 @@ Case face_case(FaceScan scan, const Landmarks& landmarks) {
 }
 
 int run_import_face(const FaceImportOptions& options, const CommonOptions& common) {
+  check_residual_file(options.residuals, {options.patient, options.out},
+                      {options.scan, options.landmarks});
   ProgressBar bar(common);
   bar.show("reading the scan", 0);
   const SourceFrame frame = source_frame(options.units, options.frame);
@@ -78,6 +80,7 @@ int run_import_face(const FaceImportOptions& options, const CommonOptions& commo
   std::vector<std::string> notes = scan.notes;
   nlohmann::ordered_json json = {{"case", options.out.string()}};
   Case patient;
+  std::optional<ResidualMap> map;
   if (options.patient.empty()) {
     if (!options.residuals.empty())
       throw InputError("--residuals needs --case, to whose skin the scan is registered");
@@ -91,11 +94,8 @@ int run_import_face(const FaceImportOptions& options, const CommonOptions& commo
     const FaceFusion fusion = fuse_face(scan, found, common.threads, patient);
     for (const auto& note : notes_of(found, fusion)) notes.push_back(note);
     notes.insert(notes.end(), found.notes.begin(), found.notes.end());
-    if (!options.residuals.empty()) {
-      ResidualMap map(full_residual_mm);
-      map.add(scan.mesh, found.X_CS, found.residual_mm);
-      map.write(options.residuals);
-    }
+    if (!options.residuals.empty())
+      map.emplace(full_residual_mm).add(scan.mesh, found.X_CS, found.residual_mm);
     json["registration"] = json_of(found, fusion);
   }
   if (!options.name.empty() || patient.name.empty())
@@ -104,6 +104,7 @@ int run_import_face(const FaceImportOptions& options, const CommonOptions& commo
   patient.notes.insert(patient.notes.end(), notes.begin(), notes.end());
   bar.show("writing", 0.95);
   save_case(patient, options.out);
+  if (map) map->write(options.residuals);
   bar.clear();
   json["notes"] = notes;
   if (common.json)

@@ -54,6 +54,7 @@ nlohmann::ordered_json fit_json(const ArchFit& fit, const std::vector<TrimmedBon
   if (fit.mirrored_mm) json["mirrored_mm"] = *fit.mirrored_mm;
   if (fit.exchanged_mm) json["exchanged_mm"] = *fit.exchanged_mm;
   if (!fit.residual_mm.empty()) json["residuals"] = residuals_json(fit.residual_mm);
+  json["bones"] = nlohmann::ordered_json::array();
   for (const auto& bone : bones)
     json["bones"].push_back(
         {{"part", bone.part}, {"removed_mm3", bone.removed_mm3}, {"open_edges", bone.open_edges}});
@@ -115,6 +116,8 @@ int run_import_teeth(const TeethImportOptions& options, const CommonOptions& com
     throw InputError("no dental scan is given; name one with --upper or --lower");
   if (options.patient.empty() && !options.residuals.empty())
     throw InputError("--residuals needs CASE, to whose crowns the scans are registered");
+  check_residual_file(options.residuals, {options.patient, options.out},
+                      {options.upper, options.lower, options.upper_points, options.lower_points});
   ProgressBar bar(common);
   bar.show("reading", 0);
   const ScannedArchesRequest request = request_of(options, common.threads);
@@ -128,8 +131,8 @@ int run_import_teeth(const TeethImportOptions& options, const CommonOptions& com
   else if (options.patient.empty())
     made.patient.name = (options.out / "").parent_path().filename().string();
   bar.show("writing", 1);
-  if (!options.residuals.empty()) write_residuals(request, made, options.residuals);
   save_case(made.patient, options.out);
+  if (!options.residuals.empty()) write_residuals(request, made, options.residuals);
   bar.clear();
   if (common.json)
     fmt::print("{}\n", result_json(made, options.out)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <initializer_list>
 #include <span>
 #include <vector>
 
@@ -8,6 +9,12 @@
 #include "engine/mesh/tri_mesh.h"
 
 namespace condyle {
+
+/// Checks the file of a map before the work. throws: InputError when it is no PLY file, lies in no
+/// folder that exists or in one of the cases `folders`, or is one of `inputs`. Empty paths pass.
+void check_residual_file(const std::filesystem::path& file,
+                         std::initializer_list<std::filesystem::path> folders,
+                         std::initializer_list<std::filesystem::path> inputs);
 
 /// Registered scans coloured by their distances from what they were registered to.
 class ResidualMap {

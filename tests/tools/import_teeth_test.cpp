@@ -94,6 +94,21 @@ TEST(ImportTeeth, TheMapOfResidualsHoldsExactDistances) {
   expect_refusal(condyle({"import", "teeth", "--upper", folder / "sample/upper.stl", "--residuals",
                           folder / "map.ply", "--out", folder / "alone"}),
                  "--residuals needs CASE");
+  // What is read, and cases, are safe from the map.
+  fs::copy_file(folder / "sample/upper.stl", folder / "upper.stl");
+  const std::string scan = read_text(folder / "upper.stl");
+  for (const auto& [map_file, words] :
+       {std::pair("map.stl", "PLY"), std::pair("absent/map.ply", "no such folder"),
+        std::pair("case/face.ply", "folder of a case"), std::pair("new/map.ply", "folder"),
+        std::pair("upper.ply", "is read")}) {
+    const std::string input = std::string(map_file) == "upper.ply" ? "upper.ply" : "upper.stl";
+    if (input == "upper.ply") write_text(folder / input, scan);
+    expect_refusal(condyle({"import", "teeth", folder / "case", "--upper", folder / input,
+                            "--residuals", folder / map_file, "--out", folder / "new"}),
+                   words);
+    EXPECT_EQ(read_text(folder / input), scan);
+    EXPECT_FALSE(fs::exists(folder / "new"));
+  }
 }
 
 TEST(ImportTeeth, ASegmentIsPlacedByTheScannedBite) {
