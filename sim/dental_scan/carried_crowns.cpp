@@ -42,10 +42,25 @@ struct CrownSection {
   double tube_mm = crown_tube_mm;
 };
 
+Box box_round(const TriMesh& crowns) {
+  constexpr double around_mm = 10;
+  Box box = bounding_box(crowns);
+  box.low -= Vector3d::Constant(around_mm);
+  box.high += Vector3d::Constant(around_mm);
+  return box;
+}
+
+bool meet(const Box& a, const Box& b) {
+  return (a.low.array() <= b.high.array()).all() && (b.low.array() <= a.high.array()).all();
+}
+
 class CrownSpace {
  public:
   CrownSpace(const ReplacingCrowns& crowns, const TriangleTree& bone)
-      : bite_(bite_of(crowns)), right_(bite_.unitOrthogonal()), up_(bite_.cross(right_)) {
+      : box_(box_round(crowns.scan)),
+        bite_(bite_of(crowns)),
+        right_(bite_.unitOrthogonal()),
+        up_(bite_.cross(right_)) {
     for (int k = 0; k < sides; ++k) {
       const double angle = 2 * std::numbers::pi * k / sides;
       directions_[k] = std::cos(angle) * right_ + std::sin(angle) * up_;
@@ -60,10 +75,7 @@ class CrownSpace {
       for (std::size_t i = 0; i < sections_.size(); ++i)
         if (!reached[i]) reached[i] = holds(sections_[i], p);
     };
-    for (const auto& t : bone.triangles) {
-      for (const int v : t) mark(bone.vertices[v]);
-      mark((bone.vertices[t[0]] + bone.vertices[t[1]] + bone.vertices[t[2]]) / 3);
-    }
+    for (const auto& t : bone.triangles) mark_triangle(bone, t, mark);
     std::vector<Cut> cuts;
     for (std::size_t i = 0; i < sections_.size(); ++i)
       if (reached[i]) cuts.push_back(cut_of(sections_[i], static_cast<int>(i)));
@@ -124,6 +136,23 @@ class CrownSpace {
     sections_.push_back(section);
   }
 
+  /// Points at most 1 mm apart, of a triangle near the crowns.
+  template <class Mark>
+  void mark_triangle(const TriMesh& bone, const Eigen::Vector3i& t, const Mark& mark) const {
+    const Vector3d &a = bone.vertices[t[0]], &b = bone.vertices[t[1]], &c = bone.vertices[t[2]];
+    Box own;
+    for (const Vector3d* p : {&a, &b, &c}) own.add(*p);
+    if (!meet(own, box_)) return;
+    constexpr double apart_mm = 1;
+    const double longest = std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()});
+    const int n = std::max(1, static_cast<int>(std::ceil(longest / apart_mm)));
+    for (int i = 0; i <= n; ++i)
+      for (int j = 0; i + j <= n; ++j) {
+        const Vector3d p = a + (b - a) * i / n + (c - a) * j / n;
+        if (box_.contains(p)) mark(p);
+      }
+  }
+
   bool holds(const CrownSection& section, const Vector3d& p) const {
     const double height = bite_.dot(p);
     if (height < section.floor + least_above_mm || height > section.top + ceiling_mm) return false;
@@ -149,6 +178,7 @@ class CrownSpace {
     return {"crowns " + std::to_string(number), std::move(inside), planes_of(section, beyond_mm)};
   }
 
+  Box box_;  // of the scan, and round it
   Vector3d bite_, right_, up_;
   std::array<Vector3d, sides> directions_;
   std::vector<CrownSection> sections_;
@@ -166,33 +196,40 @@ void append(TriMesh& mesh, const TriMesh& other) {
     mesh.triangles.push_back(t + Eigen::Vector3i::Constant(offset));
 }
 
-/// The pieces beside a cut, without those that it set free.
-TriMesh joined_rest(const std::vector<Piece>& pieces) {
+/// The pieces beside a cut, without those that it set free: small ones of a shell that has a larger
+/// one.
+TriMesh joined_rest(const TriMesh& before, const std::vector<Piece>& pieces) {
+  const Components shells = find_components(before);
+  const auto for_shells = [&](const Piece& piece, const auto& visit) {
+    for (const int source : piece.source)
+      if (source >= 0) visit(shells.of_triangle[static_cast<std::size_t>(source)]);
+  };
+  std::vector<double> largest(static_cast<std::size_t>(shells.count), 0);
+  for (const Piece& piece : pieces)
+    if (piece.sides.front() != CutSide::above)
+      for_shells(piece, [&](int s) { largest[s] = std::max(largest[s], piece.volume_mm3); });
   TriMesh rest;
   for (const Piece& piece : pieces) {
     if (piece.sides.front() == CutSide::above) continue;
-    if (has_cut_face(piece) && piece.volume_mm3 < set_free_fraction * pieces.front().volume_mm3)
-      continue;
-    append(rest, piece.mesh);
+    bool set_free = false;
+    if (has_cut_face(piece))
+      for_shells(piece, [&](int s) {
+        set_free = set_free || piece.volume_mm3 < set_free_fraction * largest[s];
+      });
+    if (!set_free) append(rest, piece.mesh);
   }
   return rest;
-}
-
-Box box_of(const TriMesh& crowns) {
-  constexpr double around_mm = 10;
-  Box box = bounding_box(crowns);
-  box.low -= Vector3d::Constant(around_mm);
-  box.high += Vector3d::Constant(around_mm);
-  return box;
 }
 
 /// Parts a bone into its shells near a box and the others, such as far cavities.
 std::array<TriMesh, 2> parted_shells(const TriMesh& bone, const Box& box) {
   const Components shells = find_components(bone);
   std::vector<char> near(static_cast<std::size_t>(shells.count), 0);
-  for (std::size_t t = 0; t < bone.triangles.size(); ++t)
-    for (const int v : bone.triangles[t])
-      if (box.contains(bone.vertices[v])) near[shells.of_triangle[t]] = 1;
+  for (std::size_t t = 0; t < bone.triangles.size(); ++t) {
+    Box own;
+    for (const int v : bone.triangles[t]) own.add(bone.vertices[v]);
+    if (meet(own, box)) near[shells.of_triangle[t]] = 1;
+  }
   std::array<TriMesh, 2> parts = {bone, bone};
   for (const bool is_near : {false, true}) {
     TriMesh& part = parts[is_near];
@@ -212,10 +249,14 @@ BoneWithoutCrowns without_carried_crowns(const TriMesh& bone, const ReplacingCro
   const std::vector<Cut> cuts = CrownSpace(crowns, TriangleTree(bone)).cuts_of(bone);
   if (cuts.empty()) return result;
   result.open_edges = unbalanced_edges(bone);
-  if (result.open_edges > 0) return result;
-  auto [far, rest] = parted_shells(bone, box_of(crowns.scan));
+  result.inside_out = signed_volume(bone) < 0;
+  if (result.open_edges > 0 || result.inside_out) return result;
+  auto [far, rest] = parted_shells(bone, box_round(crowns.scan));
   // One after another: together they would divide each other into many pieces.
-  for (const Cut& cut : cuts) rest = joined_rest(cut_bone(rest, {&cut, 1}).pieces);
+  for (const Cut& cut : cuts) {
+    if (rest.empty()) break;
+    rest = joined_rest(rest, cut_bone(rest, {&cut, 1}).pieces);
+  }
   append(rest, far);
   result.mesh = std::move(rest);
   result.removed_mm3 = signed_volume(bone) - signed_volume(result.mesh);

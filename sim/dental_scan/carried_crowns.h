@@ -6,8 +6,8 @@
 
 namespace condyle {
 
-/// Space round the crowns of a scan that bone must leave: sections 8 mm wide, from this depth below
-/// the local tips of the crowns, less than any crown is high and above every crest of bone.
+/// Space round the crowns of a scan that bone must leave: sections 8 mm wide, from about this depth
+/// below the tips of the crowns in them, less than most crowns are high.
 inline constexpr double crown_floor_mm = 6;
 inline constexpr double crown_tube_mm = 1;  // beside the crowns at the ends of the arch
 inline constexpr double wide_tube_mm = 4;   // beside the others, where no ramus is near
@@ -21,9 +21,11 @@ struct ReplacingCrowns {
 
 /// A bone without the crowns that it carried besides its teeth.
 struct BoneWithoutCrowns {
-  TriMesh mesh;            // closed; the given mesh where nothing was removed
+  TriMesh mesh;            // closed; the given mesh where nothing was removed; may be empty
   double removed_mm3 = 0;  // 0: it does not reach the crowns
-  int open_edges = 0;      // it reaches them, and nothing was removed because its surface is open
+  // It reaches them, and nothing was removed because its surface is open or faces inward.
+  int open_edges = 0;
+  bool inside_out = false;
 };
 
 /// Saws off what a bone has in the space round the crowns, as does a lump of a filling's streaks,

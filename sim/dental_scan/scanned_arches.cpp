@@ -107,28 +107,52 @@ void fit_scans(const ArchRegistration& registration, bool accept, int threads, S
   }
 }
 
+/// What became of a bone that reaches the crowns of a scan.
+std::string trimming_note(const Part& bone, const BoneWithoutCrowns& rest, bool stays,
+                          const std::string& scan) {
+  if (rest.open_edges > 0)
+    return fmt::format(
+        "{}: it reaches the crowns of {}, but its surface is open at {} edges: the crowns that it "
+        "carries stay",
+        bone.name, scan, rest.open_edges);
+  if (rest.inside_out)
+    return fmt::format(
+        "{}: it reaches the crowns of {}, but its triangles face inward: the crowns that it "
+        "carries stay",
+        bone.name, scan);
+  if (stays)
+    return fmt::format(
+        "{}: all of it lies at the crowns of {}; it is the arch's only bone, and stays", bone.name,
+        scan);
+  if (rest.mesh.empty())
+    return fmt::format("{}: all of it lay at the crowns of {}, and was removed", bone.name, scan);
+  return fmt::format("{}: {:.3g} mm3 at the crowns of {} were removed", bone.name, rest.removed_mm3,
+                     scan);
+}
+
 /// Removes the crowns that the bones of an arch carry besides its teeth.
 std::vector<TrimmedBone> trim_bones(Case& patient, const DentalScan& scan, const Pose& X_CS,
                                     const Part& before, const Vector3d& bite,
                                     std::vector<std::string>& notes) {
   std::vector<TrimmedBone> bones;
   const TriMesh crowns = moved(scan.mesh, X_CS);
+  const auto is_bone = [body = before.body](const Part& part) {
+    return part.body == body && !is_teeth(part.role) && collides(part.role);
+  };
+  auto left = std::count_if(patient.parts.begin(), patient.parts.end(), is_bone);
   for (Part& part : patient.parts) {
-    if (part.body != before.body || is_teeth(part.role) || !collides(part.role)) continue;
+    if (!is_bone(part)) continue;
     BoneWithoutCrowns rest = without_carried_crowns(part.mesh, {crowns, before.mesh, bite});
-    if (rest.open_edges > 0)
-      notes.push_back(fmt::format(
-          "{}: reaches the crowns of {}, but its surface is open at {} edges: the crowns that it "
-          "carries stay; close it first",
-          part.name, scan.source, rest.open_edges));
-    else if (rest.removed_mm3 > 0)
-      notes.push_back(fmt::format("{}: {:.0f} mm3 that reached the crowns of {} were sawn off",
-                                  part.name, rest.removed_mm3, scan.source));
-    else
-      continue;
-    bones.push_back({part.name, rest.removed_mm3, rest.open_edges});
+    if (rest.open_edges == 0 && !rest.inside_out && rest.removed_mm3 <= 0) continue;
+    const bool stays = rest.mesh.empty() && left == 1;
+    notes.push_back(trimming_note(part, rest, stays, scan.source));
+    bones.push_back({part.name, stays ? 0 : rest.removed_mm3, rest.open_edges});
+    if (stays) continue;
+    if (rest.mesh.empty()) --left;
     part.mesh = std::move(rest.mesh);
   }
+  std::erase_if(patient.parts,
+                [&](const Part& part) { return is_bone(part) && part.mesh.empty(); });
   return bones;
 }
 

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <set>
+#include <stdexcept>
 #include <vector>
 
 #include "engine/field/mesh_field.h"
@@ -15,6 +16,7 @@
 #include "sim/dental_scan/dental_scan.h"
 #include "sim/dental_scan/scanned_arches.h"
 #include "tests/sim/dental_scan/made_scans.h"
+#include "tests/support/boxes.h"
 #include "tests/support/builtin.h"
 #include "tests/support/exact_distance.h"
 #include "tests/support/real_cases.h"
@@ -57,7 +59,7 @@ const Part& bone_of(const Case& patient, bool upper) {
   for (const Part& part : patient.parts)
     if (part.body == crowns(patient, upper).body && !is_teeth(part.role) && collides(part.role))
       return part;
-  return patient.parts.front();
+  throw std::runtime_error("the arch has no bone");
 }
 
 /// Vertices and middles of triangles in the crowns or within 0.8 mm of them, in the occlusal 4.5 mm
@@ -159,6 +161,72 @@ TEST(CarriedCrowns, OfAnOpenBoneStayAndAreReported) {
   EXPECT_GT(made.lower_bones[0].open_edges, 0);
   EXPECT_EQ(made.lower_bones[0].removed_mm3, 0);
   EXPECT_EQ(mesh_hash(bone_of(made.patient, false).mesh), mesh_hash(bone_of(patient, false).mesh));
+}
+
+/// A slab through the lower incisors, down to so far below their tips.
+Part slab(const char* name, double depth_mm, double height_mm) {
+  const Vector3d tip = *builtin().landmarks.find("lower_incisal_point");
+  return {name,
+          Role::mandible,
+          box(tip + Vector3d(-6, -1, -depth_mm), tip + Vector3d(6, 3, height_mm - depth_mm)),
+          {},
+          crowns(builtin(), false).body};
+}
+
+const Part* find_part(const Case& patient, const std::string& name) {
+  for (const Part& part : patient.parts)
+    if (part.name == name) return &part;
+  return nullptr;
+}
+
+TEST(CarriedCrowns, AnotherBoneIsTrimmedAndNotDropped) {
+  Case patient = builtin();
+  patient.parts.push_back(slab("slab", 22, 21));
+  const ScannedArches made = imported(patient, false, 6);
+  const Part* after = find_part(made.patient, "slab");
+  ASSERT_TRUE(after);
+  EXPECT_TRUE(inspect(after->mesh).closed());
+  EXPECT_NEAR(bounding_box(after->mesh).size().z(), 22 - crown_floor_mm, 1.5);
+  // Nor a shell of the same bone.
+  const TriMesh shell = slab("slab", 22, 21).mesh;
+  Case slabs = builtin();
+  std::erase_if(slabs.parts, [](const Part& part) { return part.role == Role::mandible; });
+  TriMesh far = box({-10, 20, -120}, {30, 90, -60});
+  const int more = static_cast<int>(far.vertices.size());
+  far.vertices.insert(far.vertices.end(), shell.vertices.begin(), shell.vertices.end());
+  for (const auto& t : shell.triangles)
+    far.triangles.push_back(t + Eigen::Vector3i::Constant(more));
+  slabs.parts.push_back({"mandible", Role::mandible, far, {}, crowns(builtin(), false).body});
+  const ScannedArches two = imported(slabs, false, 6);
+  EXPECT_EQ(find_components(bone_of(two.patient, false).mesh).count, 2);
+  EXPECT_LT(signed_volume(bone_of(two.patient, false).mesh), signed_volume(far) - 50);
+}
+
+TEST(CarriedCrowns, ALumpThatIsAPartOfItsOwnIsRemoved) {
+  Case patient = builtin();
+  patient.parts.push_back(slab("lump", 3, 3));
+  const ScannedArches made = imported(patient, false, 7);
+  EXPECT_FALSE(find_part(made.patient, "lump"));
+  EXPECT_TRUE(std::any_of(made.notes.begin(), made.notes.end(), [](const std::string& note) {
+    return note.find("lump: all of it") == 0;
+  }));
+  // The arch's only bone stays.
+  std::erase_if(patient.parts, [](const Part& part) {
+    return part.role == Role::mandible && part.name != "lump";
+  });
+  EXPECT_TRUE(find_part(imported(patient, false, 7).patient, "lump"));
+}
+
+TEST(CarriedCrowns, OfABoneThatFacesInwardStayAndAreReported) {
+  Case patient = with_carried_crowns();
+  for (Part& part : patient.parts)
+    if (part.role == Role::mandible)
+      for (auto& t : part.mesh.triangles) std::swap(t[1], t[2]);
+  const ScannedArches made = imported(patient, false, 5);
+  EXPECT_EQ(mesh_hash(bone_of(made.patient, false).mesh), mesh_hash(bone_of(patient, false).mesh));
+  EXPECT_TRUE(std::any_of(made.notes.begin(), made.notes.end(), [](const std::string& note) {
+    return note.find("face inward") != std::string::npos;
+  }));
 }
 
 TEST(ScanResiduals, AreTheExactSignedDistancesFromTheCrowns) {
