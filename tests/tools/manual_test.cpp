@@ -77,7 +77,8 @@ std::vector<std::string> shortened(std::vector<std::string> words, const Folder&
   if ((steps || verb == "check") && !has(words, "--frames"))
     words.insert(words.end(), {"--frames", "3"});
   if (verb == "record") words.insert(words.end(), {"--size", "160x120"});
-  if (steps && !has(words, "displacement") && !has(words, "before-after"))
+  if (steps && !has(words, "displacement") && !has(words, "before-after") &&
+      !has(words, "--expression"))
     words.push_back("--no-tissue");
   return words;
 }
