@@ -69,6 +69,19 @@ void add_muscles(CLI::App& command, MuscleMotionSettings& muscles) {
            0, 300);
 }
 
+Motion jaw_motion_of(const MotionOptions& options, const Scene& scene, int threads) {
+  if (options.motion.empty())
+    return {.name = "rest",
+            .duration_s = options.settings.duration_s,
+            .recorded = false,
+            .target = [](double) { return Pose{}; },
+            .notes = {}};
+  if (is_insertion_path(options.motion))
+    return insertion_path_motion(options.motion, scene, options.settings.duration_s, threads);
+  return motion_of(options.motion, scene.patient, scene.contacts, options.settings, options.muscles,
+                   threads);
+}
+
 }  // namespace
 
 void add_motion(CLI::App& command, MotionOptions& motion) {
@@ -179,24 +192,6 @@ void check_motion(const MotionOptions& options, const Case& patient) {
                      ": the patient has no muscles of the face: the landmark " + mark +
                      " is missing");
 }
-
-namespace {
-
-Motion jaw_motion_of(const MotionOptions& options, const Scene& scene, int threads) {
-  if (options.motion.empty())
-    return {.name = "rest",
-            .duration_s = options.settings.duration_s,
-            .recorded = false,
-            .target = [](double) { return Pose{}; },
-            .notes = {}};
-
-  if (is_insertion_path(options.motion))
-    return insertion_path_motion(options.motion, scene, options.settings.duration_s, threads);
-  return motion_of(options.motion, scene.patient, scene.contacts, options.settings, options.muscles,
-                   threads);
-}
-
-}  // namespace
 
 Motion motion_of(const MotionOptions& options, const Scene& scene, int threads) {
   Motion motion = jaw_motion_of(options, scene, threads);

@@ -205,22 +205,6 @@ void tell_joined_sides(const TriMesh& face, const std::vector<char>& used,
   }
 }
 
-}  // namespace
-
-double RegionShape::inside(const Vector3d& p) const {
-  const double height = p.z() - anatomy.condyles.z();
-  // Upper border: below the eyes. Posterior border: in front of the ear, and below the ear lobe
-  // around to the side of the neck.
-  const double top = 13 - height;
-  const double back_limit = anatomy.condyles.y() + 3 + 72 * smooth_step((-24 - height) / 40);
-  // This border is steep, so it is nearer than along y.
-  constexpr double steepness = 0.45;
-  const double back = steepness * (back_limit - p.y());
-  return std::min({top, back, p.z() - floor_z});
-}
-
-namespace {
-
 /// Keeps small pieces of what is cut off: dips and bumps that the border of the region passes.
 void keep_small(const TriMesh& mesh, const std::vector<char>& dropped, std::vector<char>& keep) {
   constexpr double largest_mm2 = 150;
@@ -253,6 +237,18 @@ std::vector<char> triangles_inside(const TriMesh& mesh, const RegionShape& shape
 }
 
 }  // namespace
+
+double RegionShape::inside(const Vector3d& p) const {
+  const double height = p.z() - anatomy.condyles.z();
+  // Upper border: below the eyes. Posterior border: in front of the ear, and below the ear lobe
+  // around to the side of the neck.
+  const double top = 13 - height;
+  const double back_limit = anatomy.condyles.y() + 3 + 72 * smooth_step((-24 - height) / 40);
+  // This border is steep, so it is nearer than along y.
+  constexpr double steepness = 0.45;
+  const double back = steepness * (back_limit - p.y());
+  return std::min({top, back, p.z() - floor_z});
+}
 
 SkinRegion cut_region(const TriMesh& face, const Landmarks& landmarks, const Anatomy& anatomy,
                       std::vector<std::string>& notes) {
