@@ -173,6 +173,8 @@ void add_import_ct(Commands& commands, CLI::App& import) {
                   "Landmarks that replace the proposed ones (CSV or .mrk.json, as import meshes)")
       ->type_name("FILE");
   command.add_flag("--no-face", options->no_face, "Leave the skin out");
+  command.add_flag("--keep-metal-artifacts", options->make.keep_metal_artifacts,
+                   "Do not reduce the streaks of metal fillings");
   command.add_flag("--list", options->list, "List the series of the folder, and stop");
   in_range(command.add_option("--series", options->request.series,
                               "The series to read; default: the largest CT with a step of at most "

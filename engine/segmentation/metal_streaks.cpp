@@ -5,44 +5,18 @@
 
 #include "engine/core/parallel.h"
 #include "engine/segmentation/distance_map.h"
+#include "engine/segmentation/metal_slices.h"
 #include "engine/volume/blur.h"
 
 namespace condyle {
 namespace {
 
-constexpr int metal_hu = 2900;  // enamel is darker
-constexpr int least_saturated_hu = 2000, saturation_slack_hu = 30;
-constexpr double least_metal_mm2 = 4, longest_slab_mm = 40, beyond_mm = 1;
+constexpr double longest_slab_mm = 40, beyond_mm = 1;
 constexpr double beside_bone_mm = 4, beside_head_mm = 3, spike_mm = 5, within_head_mm = 4;
 constexpr float streak_reach_mm = 50, farthest_beside_mm = 10;
 constexpr double faint_from_mm = 1, rise_hu_per_mm = 200;  // of the least bone beside bone
 constexpr double fading_mm = 10, outline_blur_mm = 2;
 constexpr std::int16_t streak_air_hu = -1000;
-
-/// A slice of a lattice across an axis: places of its pixels.
-struct SliceLattice {
-  std::array<std::size_t, 2> axes;  // in the slice
-  std::size_t axis;
-  std::array<int, 3> size;  // of the flat lattice
-  Eigen::Vector3d spacing_mm;
-
-  SliceLattice(int across, const std::array<int, 3>& whole, const Eigen::Vector3d& spacing)
-      : axes{across == 0 ? 1u : 0u, across == 2 ? 1u : 2u},
-        axis(static_cast<std::size_t>(across)),
-        size{whole[axes[0]], whole[axes[1]], 1},
-        spacing_mm(spacing[static_cast<int>(axes[0])], spacing[static_cast<int>(axes[1])], 1) {}
-  std::size_t pixels() const {
-    return static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]);
-  }
-  /// Place in the whole lattice of a pixel of a slice.
-  std::array<int, 3> place(std::size_t pixel, int slice) const {
-    std::array<int, 3> at;
-    at[axes[0]] = static_cast<int>(pixel) % size[0];
-    at[axes[1]] = static_cast<int>(pixel) / size[0];
-    at[axis] = slice;
-    return at;
-  }
-};
 
 /// Squared distances from the pixels that hold, mm^2.
 template <class Holds>
@@ -122,15 +96,11 @@ bool is_bone(VoxelLabel label) { return label != no_bone && label != other_bone;
 }  // namespace
 
 std::optional<MetalSlab> find_metal(const Volume& volume, const BoneVoxels& bone) {
-  int level = metal_hu;
-  const int saturated = *std::max_element(volume.values.begin(), volume.values.end());
-  if (saturated < metal_hu && saturated >= least_saturated_hu)
-    level = saturated - saturation_slack_hu;  // the scanner's range ends there
-  Eigen::Index upward = 0;
-  volume.axes.row(2).cwiseAbs().maxCoeff(&upward);
-  const SliceLattice lattice(static_cast<int>(upward), bone.box.size, volume.spacing_mm);
+  const int level = metal_level(volume);
+  const int upward = slice_axis(volume);
+  const SliceLattice lattice(upward, bone.box.size, volume.spacing_mm);
   const double pixel_mm2 = lattice.spacing_mm.prod();
-  MetalSlab slab{static_cast<int>(upward), -1, -1, {}};
+  MetalSlab slab{upward, -1, -1, {}};
   for (int slice = 0; slice < bone.box.size[lattice.axis]; ++slice) {
     std::vector<Eigen::Vector3d> places;
     for (std::size_t p = 0; p < lattice.pixels(); ++p) {

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "engine/core/error.h"
+#include "engine/segmentation/metal_artifacts.h"
 #include "engine/segmentation/scan_surfaces.h"
 #include "sim/case/import_checks.h"
 #include "sim/case/soft_landmarks.h"
@@ -80,7 +81,8 @@ class CtSegmentation {
       : volume_(volume), model_(model), request_(request) {}
 
   CtCase run(const Progress& progress) {
-    find_tissue(part_of(progress, 0, 0.3));
+    reduce_artifacts(part_of(progress, 0, 0.05));
+    find_tissue(part_of(progress, 0.05, 0.3));
     fit_template(part_of(progress, 0.3, 0.55));
     part_bones(part_of(progress, 0.55, 0.7));
     add_bones(part_of(progress, 0.7, 0.95));
@@ -109,23 +111,34 @@ class CtSegmentation {
                       std::forward<Work>(work));
   }
 
+  void reduce_artifacts(const Progress& progress) {
+    if (request_.keep_metal_artifacts) return;
+    auto corrected = reduce_metal_artifacts(volume_, request_.threads, progress);
+    if (!corrected) return;
+    corrected_ = std::move(corrected->volume);
+    patient().notes.push_back(fmt::format("metal artifacts were reduced in {} slice{}",
+                                          corrected->slices, corrected->slices == 1 ? "" : "s"));
+  }
+
+  const Volume& volume() const { return corrected_.values.empty() ? volume_ : corrected_; }
+
   void find_tissue(const Progress& progress) {
-    levels_ = tissue_levels(volume_, request_.source);
+    levels_ = tissue_levels(volume(), request_.source);
     head_ =
-        find_head(volume_, levels_, request_.source, request_.threads, part_of(progress, 0, 0.3));
+        find_head(volume(), levels_, request_.source, request_.threads, part_of(progress, 0, 0.3));
     BoneOptions options{.threads = request_.threads};
     if (request_.threshold_hu) options.threshold_hu = *request_.threshold_hu;
     bone_ =
-        find_bone(volume_, levels_, head_, request_.source, options, part_of(progress, 0.3, 0.6));
+        find_bone(volume(), levels_, head_, request_.source, options, part_of(progress, 0.3, 0.6));
     const Progress of_surfaces = part_of(progress, 0.6, 1);
     JointProgress joint(of_surfaces, 2);
     auto skin = beside([&] {
       if (!head_.has_outside || !request_.face) return ScanSurface{};
-      return skin_surface(volume_, levels_, head_, bone_.metal, request_.source,
+      return skin_surface(volume(), levels_, head_, bone_.metal, request_.source,
                           surface_options(request_.face_triangles), joint.of(1));
     });
     whole_ =
-        bone_surface(volume_, bone_, skull_label, surface_options(fitted_triangles), joint.of(0));
+        bone_surface(volume(), bone_, skull_label, surface_options(fitted_triangles), joint.of(0));
     skin_ = skin.get();
   }
 
@@ -148,16 +161,16 @@ class CtSegmentation {
     } else if (has_mandible() || by_hand) {
       const FittedSeeds fitted = fitted_seeds(fit);
       const auto seeds =
-          seed_labels(volume_, bone_, fitted.surfaces, request_.seeds,
+          seed_labels(volume(), bone_, fitted.surfaces, request_.seeds,
                       {.template_error_mm = fitted.error_mm, .threads = request_.threads},
                       part_of(progress, 0, 0.4));
-      split_bones(volume_, seeds, bone_, request_.threads, part_of(progress, 0.4, 0.9));
+      split_bones(volume(), seeds, bone_, request_.threads, part_of(progress, 0.4, 0.9));
     }
     if (has_skull())
-      label_teeth(volume_, carried_mesh(fit, Role::upper_teeth), carried_mesh(fit, Role::skull),
+      label_teeth(volume(), carried_mesh(fit, Role::upper_teeth), carried_mesh(fit, Role::skull),
                   skull_label, upper_teeth_label, bone_, request_.threads);
     if (has_mandible())
-      label_teeth(volume_, carried_mesh(fit, Role::lower_teeth), carried_mesh(fit, Role::mandible),
+      label_teeth(volume(), carried_mesh(fit, Role::lower_teeth), carried_mesh(fit, Role::mandible),
                   mandible_label, lower_teeth_label, bone_, request_.threads);
   }
 
@@ -184,7 +197,7 @@ class CtSegmentation {
     const auto make = [&](std::size_t i) {
       SurfaceOptions options = surface_options(all[i].triangles);
       if (is_teeth(all[i].role)) options.least_piece_mm3 = least_tooth_mm3;
-      surfaces[i] = bone_surface(volume_, bone_, all[i].label, options, joint.of(i));
+      surfaces[i] = bone_surface(volume(), bone_, all[i].label, options, joint.of(i));
     };
     auto skull = beside([&] { make(0); });
     for (std::size_t i = 1; i < surfaces.size(); ++i) make(i);
@@ -256,7 +269,7 @@ class CtSegmentation {
     const auto joints = JointSurfaces::find(patient());
     if (!joints) return;
     const double gap_mm = joints->rest_gap_mm();
-    if (gap_mm >= std::min(least_disc_mm, volume_.spacing_mm.maxCoeff())) return;
+    if (gap_mm >= std::min(least_disc_mm, volume().spacing_mm.maxCoeff())) return;
     // The wider joint shows more of its disc.
     const double wider_mm =
         std::max(joints->rest_gap_mm(JawSide::left), joints->rest_gap_mm(JawSide::right));
@@ -269,6 +282,7 @@ class CtSegmentation {
   }
 
   const Volume& volume_;
+  Volume corrected_ = {};  // where there is metal
   const Case& model_;
   const CtCaseRequest& request_;
   TissueLevels levels_;

@@ -19,6 +19,7 @@ struct CtCaseRequest {
   std::optional<double> threshold_hu = {};  // of bone; default: from the scan's histogram
   std::vector<SeedPoint> seeds = {};        // in the skull (1) or the lower jaw (2), by hand
   bool face = true;
+  bool keep_metal_artifacts = false;
   int skull_triangles = 400000, mandible_triangles = 100000, face_triangles = 150000;
   int threads = 2;
 };

@@ -9,6 +9,7 @@
 #include "engine/core/error.h"
 #include "engine/core/progress.h"
 #include "engine/mesh/topology.h"
+#include "engine/segmentation/metal_artifacts.h"
 #include "engine/segmentation/scan_surfaces.h"
 #include "engine/segmentation/split_bones.h"
 #include "sim/ct_case/ct_case.h"
@@ -149,10 +150,12 @@ class ImportBench {
     measure_case(volume);
   }
 
-  void measure_surfaces(const Volume& volume) {
+  void measure_surfaces(const Volume& scan) {
     const auto surfaces = warped_template(patient_, 2, 1);
     reset_peak();
     const Stopwatch watch;
+    const auto corrected = reduce_metal_artifacts(scan, common_.threads);
+    const Volume& volume = corrected ? corrected->volume : scan;
     const TissueLevels levels = tissue_levels(volume, "scan");
     const HeadRegion region = find_head(volume, levels, "scan", common_.threads);
     BoneVoxels bone = find_bone(volume, levels, region, "scan", {.threads = common_.threads});
@@ -202,8 +205,9 @@ class ImportBench {
  private:
   void segment(const BenchScan& what, const ScannedHead& head, double noise_hu,
                const CtScan& scan) {
-    const Volume& volume = scan.volume;
     const int threads = common_.threads;
+    const auto corrected = reduce_metal_artifacts(scan.volume, threads);
+    const Volume& volume = corrected ? corrected->volume : scan.volume;
     const TissueLevels levels = tissue_levels(volume, "scan");
     const HeadRegion region = find_head(volume, levels, "scan", threads);
     const BoneVoxels whole = find_bone(volume, levels, region, "scan", {.threads = threads});
