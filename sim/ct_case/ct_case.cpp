@@ -16,6 +16,7 @@
 #include "sim/case/import_checks.h"
 #include "sim/case/soft_landmarks.h"
 #include "sim/case/tooth_labels.h"
+#include "sim/ct_case/arch_fit.h"
 #include "sim/ct_case/fitted_seeds.h"
 #include "sim/ct_case/tooth_voxels.h"
 #include "sim/motion/condylar_path_table.h"
@@ -166,12 +167,22 @@ class CtSegmentation {
                       part_of(progress, 0, 0.4));
       split_bones(volume(), seeds, bone_, request_.threads, part_of(progress, 0.4, 0.9));
     }
-    if (has_skull())
-      label_teeth(volume(), carried_mesh(fit, Role::upper_teeth), carried_mesh(fit, Role::skull),
-                  skull_label, upper_teeth_label, bone_, request_.threads);
+    if (has_skull()) find_crowns(Role::upper_teeth, Role::skull, skull_label, upper_teeth_label);
     if (has_mandible())
-      label_teeth(volume(), carried_mesh(fit, Role::lower_teeth), carried_mesh(fit, Role::mandible),
-                  mandible_label, lower_teeth_label, bone_, request_.threads);
+      find_crowns(Role::lower_teeth, Role::mandible, mandible_label, lower_teeth_label);
+  }
+
+  void find_crowns(Role teeth, Role bone, VoxelLabel bone_label, VoxelLabel teeth_label) {
+    AnatomyFit& fit = made_.fit;
+    if (const auto arch = fit_arch(volume(), bone_, bone_label, carried_mesh(fit, teeth),
+                                   carried_mesh(fit, bone))) {
+      move_crowns(teeth, arch->X, fit);
+      patient().notes.push_back(
+          fmt::format("the {} crowns lie {:.1f} mm from where the fit of the bone put them",
+                      teeth == Role::upper_teeth ? "upper" : "lower", arch->moved_mm));
+    }
+    label_teeth(volume(), carried_mesh(fit, teeth), carried_mesh(fit, bone), bone_label,
+                teeth_label, bone_, request_.threads);
   }
 
   void keep(ScanSurface surface, Part part) {
