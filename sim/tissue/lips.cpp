@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <optional>
@@ -206,7 +207,7 @@ class LipLineCut {
   }
 
  private:
-  /// Only the front of the face near the line, not the nape behind it.
+  /// Not the nape behind the line.
   bool is_near(const Eigen::Vector3i& t) const {
     for (int k = 0; k < 3; ++k) {
       const Vector3d& p = face_.vertices[t[k]];
@@ -214,17 +215,70 @@ class LipLineCut {
           std::abs(line_.height(p)) > 15 || p.y() > line_.middle.y() + 40)
         return false;
     }
+    return true;
+  }
+
+  std::array<int, 3> corners(int t) const {
+    const Eigen::Vector3i& triangle = face_.triangles[t];
+    return {triangle[0], triangle[1], triangle[2]};
+  }
+
+  bool faces_front(const Eigen::Vector3i& t) const {
     const Vector3d &a = face_.vertices[t[0]], &b = face_.vertices[t[1]], &c = face_.vertices[t[2]];
     return (b - a).cross(c - a).y() < 0;
   }
 
   void measure_heights() {
+    std::vector<int> near, front;
     for (std::size_t t = 0; t < face_.triangles.size(); ++t) {
-      in_zone_[t] = is_near(face_.triangles[t]);
-      if (!in_zone_[t]) continue;
-      for (int k = 0; k < 3; ++k)
-        height_[face_.triangles[t][k]] = line_.height(face_.vertices[face_.triangles[t][k]]);
+      if (!is_near(face_.triangles[t])) continue;
+      near.push_back(static_cast<int>(t));
+      for (const int v : face_.triangles[t]) height_[v] = line_.height(face_.vertices[v]);
+      if (faces_front(face_.triangles[t])) front.push_back(static_cast<int>(t));
     }
+    follow_line(near, std::move(front));
+  }
+
+  /// The zone: the front of the face, and where the line goes on from there into folds.
+  void follow_line(const std::vector<int>& near, std::vector<int> waiting) {
+    std::map<std::pair<int, int>, std::vector<int>> beside;
+    for (const int t : near)
+      for (int k = 0; k < 3; ++k)
+        beside[std::minmax(face_.triangles[t][k], face_.triangles[t][(k + 1) % 3])].push_back(t);
+    for (const int t : waiting) in_zone_[t] = 1;
+    while (!waiting.empty()) {
+      const Eigen::Vector3i triangle = face_.triangles[waiting.back()];
+      waiting.pop_back();
+      for (int k = 0; k < 3; ++k) {
+        const int a = triangle[k], b = triangle[(k + 1) % 3];
+        if (height_[a] * height_[b] >= 0) continue;
+        for (const int t : beside[std::minmax(a, b)])
+          if (!in_zone_[t]) {
+            in_zone_[t] = 1;
+            waiting.push_back(t);
+          }
+      }
+    }
+    take_around_line(near);
+  }
+
+  /// All triangles around the vertices beside the line: one left out would join the lips.
+  void take_around_line(const std::vector<int>& near) {
+    std::vector<char> beside(face_.vertices.size(), 0);
+    for (const int t : near) {
+      const auto [a, b, c] = corners(t);
+      const bool above = height_[a] > 0;
+      if (!in_zone_[t] || ((height_[b] > 0) == above && (height_[c] > 0) == above)) continue;
+      beside[a] = beside[b] = beside[c] = 1;
+    }
+    std::vector<double> in_zone(height_.size(), 1e9);
+    for (const int t : near) {
+      const auto [a, b, c] = corners(t);
+      in_zone_[t] |= beside[a] | beside[b] | beside[c];
+      if (in_zone_[t])
+        for (const int v : {a, b, c}) in_zone[v] = height_[v];
+    }
+    height_ = std::move(in_zone);
   }
 
   /// Fraction of an edge where the line crosses it.
