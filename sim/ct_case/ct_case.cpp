@@ -18,6 +18,7 @@
 #include "sim/case/tooth_labels.h"
 #include "sim/ct_case/arch_fit.h"
 #include "sim/ct_case/fitted_seeds.h"
+#include "sim/ct_case/open_joints.h"
 #include "sim/ct_case/tooth_voxels.h"
 #include "sim/motion/condylar_path_table.h"
 #include "sim/motion/joint_surfaces.h"
@@ -92,6 +93,7 @@ class CtSegmentation {
     made_.threshold_hu = bone_.threshold_hu;
     for (const std::string& note : made_.fit.notes) patient().notes.push_back(note);
     turn_to_lps();
+    part_joints();
     add_disc();
     patient().name = request_.name;
     estimate_landmarks(patient());
@@ -272,6 +274,14 @@ class CtSegmentation {
       for (auto& p : canal.points) p = R * p;
     patient().notes.push_back(
         "the scan was turned to LPS: its face looked elsewhere than its axes say");
+  }
+
+  void part_joints() {
+    const double moved_mm = open_joints(patient());
+    if (moved_mm > 0)
+      patient().notes.push_back(fmt::format(
+          "condyle and skull touched in the surfaces: they were moved apart by up to {:.2f} mm",
+          moved_mm));
   }
 
   /// Joints whose bones are nearer to each other than the voxels can show have a disc all the same.
