@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <unordered_map>
 
 #include "engine/math/smooth_step.h"
 #include "engine/mesh/rims.h"
@@ -90,7 +91,24 @@ struct RimPoint {
   bool upper;
 };
 
+/// Of each vertex of a rim: how far the triangles beside it lie above it, mm.
+std::vector<double> heights_beside(const TriMesh& face, const std::vector<int>& rim) {
+  std::unordered_map<int, std::size_t> place;
+  for (std::size_t i = 0; i < rim.size(); ++i) place.emplace(rim[i], i);
+  std::vector<double> above(rim.size(), 0);
+  for (const auto& t : face.triangles)
+    for (const int v : t)
+      if (const auto at = place.find(v); at != place.end())
+        for (const int other : t)
+          above[at->second] += face.vertices[static_cast<std::size_t>(other)].z() -
+                               face.vertices[static_cast<std::size_t>(v)].z();
+  return above;
+}
+
 std::vector<RimPoint> rim_points(const TriMesh& face, const std::vector<int>& rim) {
+  constexpr double apart_mm =
+      0.5;  // lips that are nearer are distinguished by the skin beside them
+  const std::vector<double> beside = heights_beside(face, rim);
   const auto n = rim.size();
   const auto place = [&](std::size_t i) -> const Vector3d& {
     return face.vertices[static_cast<std::size_t>(rim[i % n])];
@@ -101,23 +119,31 @@ std::vector<RimPoint> rim_points(const TriMesh& face, const std::vector<int>& ri
     if (place(i).x() > place(left).x()) left = i;
   }
   std::vector<RimPoint> places(n);
+  struct Lip {
+    double height, beside;  // mean, mm; sum over its triangles
+  };
   const auto walk = [&](std::size_t from, std::size_t to, double start) {
     const std::size_t count = (to + n - from) % n;
-    double length = 0, height = 0;
+    double length = 0;
+    Lip lip{};
     for (std::size_t k = 0; k < count; ++k) {
       length += (place(from + k + 1) - place(from + k)).norm();
-      height += place(from + k).z();
+      lip.height += place(from + k).z() / static_cast<double>(count);
+      lip.beside += beside[(from + k) % n];
     }
     double gone = 0;
     for (std::size_t k = 0; k < count; ++k) {
       places[(from + k) % n] = {start - 2 * start * gone / length, false};
       gone += (place(from + k + 1) - place(from + k)).norm();
     }
-    return height / static_cast<double>(std::max<std::size_t>(count, 1));
+    return lip;
   };
-  const double there = walk(right, left, -1), back = walk(left, right, 1);
+  const Lip there = walk(right, left, -1), back = walk(left, right, 1);
+  const bool there_is_upper = std::abs(there.height - back.height) > apart_mm
+                                  ? there.height > back.height
+                                  : there.beside > back.beside;
   for (std::size_t k = 0; k < n; ++k)
-    places[k].upper = ((k + n - right) % n < (left + n - right) % n) == (there > back);
+    places[k].upper = ((k + n - right) % n < (left + n - right) % n) == there_is_upper;
   return places;
 }
 
@@ -248,6 +274,18 @@ class Roof {
   double bone_z_ = 0, bone_y_ = 0;  // position of the last bone above
 };
 
+/// How far a place is the back of a resting tongue, 0 to 1: between the lower crowns, from behind
+/// the incisors to the throat.
+double tongue_at(double x, double y, const MouthSpace& space) {
+  constexpr double behind_edges_mm = 9, tip_mm = 14, root_mm = 20, beside_mm = 10;
+  const double half = space.width.at(y) - beside_mm;
+  const double aside = (x - space.teeth.center().x()) / half;
+  if (half <= 0 || std::abs(aside) >= 1) return 0;
+  const double from_tip = y - space.teeth.min().y() - behind_edges_mm;
+  return std::sqrt(1 - aside * aside) * std::sqrt(smooth_step(from_tip / tip_mm)) *
+         smooth_step((space.throat_y - y) / root_mm);
+}
+
 /// The vertices of each ring behind the i-th vertex of the rim.
 void lay_column(MouthLining& lining, std::size_t i, const Vector3d& start, const RimPoint& place,
                 const MouthSpace& space) {
@@ -270,6 +308,11 @@ void lay_column(MouthLining& lining, std::size_t i, const Vector3d& start, const
     const double x =
         start.x() + smooth_step(4 * t) * (teeth.center().x() + across * half - start.x());
     double z = is_upper ? roof.at(x, y, fornix) : fornix;
+    if (!is_upper && space.tongueless) {
+      const double tongue = turn * tongue_at(x, y, space);
+      z += tongue * (MouthSpace::fornix_down_mm - MouthSpace::tongue_down_mm);
+      lining.tongue[v] = static_cast<float>(tongue);
+    }
     z = space.mid_z + turn * (z - space.mid_z);
     const double in = ring == 0 ? 0 : smooth_step(turned + (y - start.y()) / rises_mm);
     lining.rest[v] = Vector3d(x, y, start.z() + in * (z - start.z())).cast<float>();
@@ -312,6 +355,7 @@ std::optional<MouthLining> line_mouth(std::span<const Part> parts, const TriMesh
   lining.rest.resize((rings + 1) * n + 1);
   lining.jaw.resize(lining.rest.size());
   lining.lip.resize(lining.rest.size());
+  lining.tongue.assign(lining.rest.size(), 0);
   const auto starts = starts_of(face, lining);
   for (std::size_t i = 0; i < n; ++i)
     lay_column(lining, i, starts[i].cast<double>(), places[i], space);

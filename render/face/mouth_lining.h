@@ -12,13 +12,15 @@ namespace condyle {
 
 /// The lining of the mouth from the face's rim behind the lips to the throat: around both arches,
 /// under the palate, over the floor. It closes the face so that the mouth is a cavity. mm, at rest.
-/// It lies within bone, gums and tongue, which are visible instead of it.
+/// It lies within bone, gums and tongue, which are visible instead of it. A patient without a
+/// tongue gets one: the floor rises between the lower crowns.
 struct MouthLining {
   std::vector<int> rim;               // vertices of the face, in order around the mouth
   bool cut = false;                   // the rim is a border of removed triangles: see even_rim
   std::vector<Eigen::Vector3f> rest;  // rings of equal size, the first at the rim; then the throat
   std::vector<float> jaw;             // how far each follows the mandible, 0 to 1
   std::vector<float> lip;             // and the deformation of the rim beyond that, 0 to 1
+  std::vector<float> tongue;          // how far each is the back of a tongue, 0 to 1
   std::vector<Eigen::Vector3i> triangles;  // of `rest`; facing into the mouth
   std::vector<Eigen::Vector3i> face;       // the displayed triangles of the face: up to the rim
   float mid_z = 0;                         // height of the closed lips

@@ -155,6 +155,8 @@ MouthSpace::MouthSpace(std::span<const Part> parts, std::span<const Vector3d> ar
     : teeth(box_around(arches)),
       mid_z(mid),
       throat_y(teeth.max().y() + throat_mm),
+      tongueless(std::none_of(parts.begin(), parts.end(),
+                              [](const Part& part) { return part.role == Role::tongue; })),
       bone(parts, region_around(teeth), mid_z + 1),
       above(parts, bone, region_around(teeth), mid_z),
       width(arches, teeth),

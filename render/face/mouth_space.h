@@ -68,12 +68,14 @@ struct MouthSpace {
   // from the lip line to where the cheek meets the jaw
   static constexpr double fornix_up_mm = 11.5;
   static constexpr double fornix_down_mm = 13;  // to the upper and to the lower jaw
+  static constexpr double tongue_down_mm = 3;   // from the lip line to the back of a resting tongue
   // visible surfaces lie in front of the lining by this much
   static constexpr double within_mm = 1.5;
   static constexpr double highest_palate_mm = 32;  // above the lip line
 
   Eigen::AlignedBox3d teeth;
   double mid_z, throat_y;
+  bool tongueless;  // the patient has no tongue of its own
   Ceiling bone;
   AboveCeiling above;
   MouthWidth width;

@@ -11,6 +11,7 @@
 namespace condyle {
 namespace {
 
+const Eigen::Vector3f tongue_color(0.66f, 0.37f, 0.36f);
 constexpr float of_lip_mm = 7;  // distance from the rim over which the lining blends with the lip
 
 /// Unit normals of the rim's vertices, of the face alone.
@@ -49,6 +50,7 @@ MouthCavity::MouthCavity(const MouthLining& lining, const Drawable& face) : lini
     Eigen::Vector3f color(0.52f + 0.12f * std::min(1.f, 3 * deep),
                           0.24f + 0.10f * std::min(1.f, 3 * deep),
                           0.23f + 0.09f * std::min(1.f, 3 * deep));
+    color += lining_.tongue[v] * (tongue_color - color);
     float sky = 0.8f - 0.35f * deep;
     const float fraction = (lining_.rest[v] - lining_.rest[v % around]).norm() / of_lip_mm;
     const float lip = fraction < 1 ? (1 - fraction) * (1 - fraction) * (1 + 2 * fraction) : 0.f;

@@ -2,7 +2,10 @@
 #include "render/face/mouth_lining.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
+#include <map>
 #include <numbers>
+#include <utility>
 
 #include "render/mesh/vertex_normals.h"
 #include "render/scene/mouth_cavity.h"
@@ -75,6 +78,80 @@ TEST(MouthLining, FollowsTheLipsInFrontAndItsJawBehindThem) {
   }
   EXPECT_GT(with_skull, 5);
   EXPECT_GT(with_jaw, 5);
+}
+
+/// A head whose closed lips were one surface and are cut apart: vertices of both lips coincide. The
+/// order of the triangles, and so that of the rim, may be reversed.
+std::vector<Part> head_with_cut_lips(bool reversed) {
+  auto parts = head_with_mouth(false);
+  TriMesh& face = parts[0].mesh;
+  const auto at_lips = [&](int v) {
+    const Eigen::Vector3d& p = face.vertices[static_cast<std::size_t>(v)];
+    return p.y() < 0 && std::abs(p.z()) < 1e-6 && std::abs(p.x()) < 18;
+  };
+  std::map<int, int> twins;
+  for (auto& t : face.triangles) {
+    double height = 0;
+    for (const int v : t) height += face.vertices[static_cast<std::size_t>(v)].z();
+    if (height > 0) continue;
+    for (int& v : t) {
+      if (!twins.contains(v) && !at_lips(v)) continue;
+      const auto [twin, fresh] = twins.try_emplace(v, static_cast<int>(face.vertices.size()));
+      if (fresh) {
+        const Eigen::Vector3d p = face.vertices[static_cast<std::size_t>(v)];
+        face.vertices.push_back(p);
+      }
+      v = twin->second;
+    }
+  }
+  if (reversed) {
+    // Other numbers for the vertices, so that the rim is found in another order.
+    const int last = static_cast<int>(face.vertices.size()) - 1;
+    std::reverse(face.vertices.begin(), face.vertices.end());
+    for (auto& t : face.triangles)
+      for (int& v : t) v = last - v;
+  }
+  return parts;
+}
+
+TEST(MouthLining, LipsThatCoincideAreKnownByTheSkinBesideThem) {
+  for (const bool reversed : {false, true}) {
+    const auto parts = head_with_cut_lips(reversed);
+    const TriMesh& face = parts[0].mesh;
+    const auto lining = line_mouth(parts);
+    ASSERT_TRUE(lining);
+    int upper = 0, lower = 0;
+    for (std::size_t i = 0; i < lining->rim.size(); ++i) {
+      if (std::abs(face.vertices[static_cast<std::size_t>(lining->rim[i])].x()) > 14) continue;
+      double beside = 0;
+      for (const auto& t : face.triangles)
+        if (t[0] == lining->rim[i] || t[1] == lining->rim[i] || t[2] == lining->rim[i])
+          for (const int v : t) beside += face.vertices[static_cast<std::size_t>(v)].z();
+      (beside > 0 ? upper : lower) += 1;
+      EXPECT_EQ(lining->jaw[i]<0.5f, beside> 0) << i;
+    }
+    EXPECT_GT(upper, 3);
+    EXPECT_GT(lower, 3);
+  }
+}
+
+TEST(MouthLining, APatientWithoutATongueGetsOne) {
+  auto parts = head_with_mouth();
+  const auto made = line_mouth(parts);
+  parts.push_back(make_part("tongue", Role::tongue, ball({0, -20, -8}, 8, 16)));
+  const auto none = line_mouth(parts);
+  ASSERT_TRUE(made && none);
+  ASSERT_EQ(made->rest.size(), none->rest.size());
+  float rise = 0;
+  for (std::size_t v = 0; v < made->rest.size(); ++v) {
+    EXPECT_EQ(none->tongue[v], 0);
+    const float up = made->rest[v].z() - none->rest[v].z();
+    if (made->tongue[v] == 0) {
+      EXPECT_EQ(up, 0);
+    }
+    if (made->tongue[v] > 0.7f) rise = std::max(rise, up);
+  }
+  EXPECT_GT(rise, 6);
 }
 
 /// The same with crowns that are part of the jaws, which extend further than the teeth.
@@ -214,8 +291,10 @@ TEST_F(MouthSection, IsAtItsRimOfTheFacesColour) {
     const auto& skin = faces[0].colors[static_cast<std::size_t>(lining->rim[i])];
     for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(inside.colors[i][k], skin[k], 1);
     EXPECT_EQ(inside.extras[i][3], 255);
-    // Far behind it is of one red, and has nothing of the lip.
-    EXPECT_EQ(inside.colors[20 * n + i], inside.colors[20 * n]);
+    // Far behind it is of one red, beside the tongue, and has nothing of the lip.
+    if (lining->tongue[20 * n + i] == lining->tongue[20 * n]) {
+      EXPECT_EQ(inside.colors[20 * n + i], inside.colors[20 * n]);
+    }
     EXPECT_EQ(inside.extras[20 * n + i][3], 0);
   }
 }
