@@ -10,6 +10,8 @@
 
 namespace condyle {
 
+inline const Eigen::Vector3f tongue_color(0.66f, 0.37f, 0.36f);  // of the lining's tongue
+
 /// The lining of the mouth from the face's rim behind the lips to the throat: around both arches,
 /// under the palate, over the floor. It closes the face so that the mouth is a cavity. mm, at rest.
 /// It lies within bone, gums and tongue, which are visible instead of it. A patient without a

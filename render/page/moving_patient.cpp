@@ -120,7 +120,9 @@ Points lining_colors(const MouthLining& lining) {
   const auto rings = static_cast<float>(std::max<std::size_t>(1, lining.rest.size() / around));
   for (std::size_t v = 0; v < lining.rest.size(); ++v) {
     const float deep = static_cast<float>(v / around) / rings;
-    colors.push_back(Vector3f(0.60f, 0.30f, 0.28f) * (0.85f - 0.55f * deep));
+    const Vector3f mucosa(0.60f, 0.30f, 0.28f);
+    colors.push_back((mucosa + lining.tongue[v] * (tongue_color - mucosa)) *
+                     (0.85f - 0.55f * deep));
   }
   return colors;
 }

@@ -11,7 +11,6 @@
 namespace condyle {
 namespace {
 
-const Eigen::Vector3f tongue_color(0.66f, 0.37f, 0.36f);
 constexpr float of_lip_mm = 7;  // distance from the rim over which the lining blends with the lip
 
 /// Unit normals of the rim's vertices, of the face alone.

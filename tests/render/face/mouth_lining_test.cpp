@@ -146,9 +146,7 @@ TEST(MouthLining, APatientWithoutATongueGetsOne) {
   for (std::size_t v = 0; v < made->rest.size(); ++v) {
     EXPECT_EQ(none->tongue[v], 0);
     const float up = made->rest[v].z() - none->rest[v].z();
-    if (made->tongue[v] == 0) {
-      EXPECT_EQ(up, 0);
-    }
+    EXPECT_GE(up, -1e-4f);
     if (made->tongue[v] > 0.7f) rise = std::max(rise, up);
   }
   EXPECT_GT(rise, 6);
