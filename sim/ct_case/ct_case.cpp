@@ -16,7 +16,7 @@
 #include "sim/case/import_checks.h"
 #include "sim/case/soft_landmarks.h"
 #include "sim/case/tooth_labels.h"
-#include "sim/ct_case/arch_fit.h"
+#include "sim/ct_case/crown_fit.h"
 #include "sim/ct_case/fitted_seeds.h"
 #include "sim/ct_case/open_joints.h"
 #include "sim/ct_case/tooth_voxels.h"
@@ -176,12 +176,12 @@ class CtSegmentation {
 
   void find_crowns(Role teeth, Role bone, VoxelLabel bone_label, VoxelLabel teeth_label) {
     AnatomyFit& fit = made_.fit;
-    if (const auto arch = fit_arch(volume(), bone_, bone_label, carried_mesh(fit, teeth),
-                                   carried_mesh(fit, bone))) {
-      move_crowns(teeth, arch->X, fit);
+    if (const auto crowns = fit_crowns(volume(), bone_, bone_label, carried_mesh(fit, teeth),
+                                       carried_mesh(fit, bone))) {
+      move_crowns(teeth, crowns->X, fit);
       patient().notes.push_back(
           fmt::format("the {} crowns lie {:.1f} mm from where the fit of the bone put them",
-                      teeth == Role::upper_teeth ? "upper" : "lower", arch->moved_mm));
+                      teeth == Role::upper_teeth ? "upper" : "lower", crowns->moved_mm));
     }
     label_teeth(volume(), carried_mesh(fit, teeth), carried_mesh(fit, bone), bone_label,
                 teeth_label, bone_, request_.threads);

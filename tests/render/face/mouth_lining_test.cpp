@@ -359,11 +359,12 @@ TEST_F(MouthSection, WithoutOneTheOpenMouthIsDarkRedAndNothingIsSeenThroughIt) {
 }
 
 TEST_F(MouthSection, ALipThatEndsAtItsEdgeHasNoGlintAlongIt) {
-  const auto parts = head_with_mouth();
+  auto parts = head_with_mouth();
+  parts.push_back(make_part("tongue", Role::tongue, ball({0, -20, -8}, 8, 16)));
   SceneRenderer renderer(parts);
   auto settings = mask_settings(200);
   settings.shadows = false;
-  settings.part_opacity = {{"upper_teeth", 0}, {"lower_teeth", 0}};
+  settings.part_opacity = {{"upper_teeth", 0}, {"lower_teeth", 0}, {"tongue", 0}};
   Camera camera = front_camera(10);
   camera.target = {0, -59, -7};
   camera.direction = Eigen::Vector3d(0.1, -1, 0.5).normalized();

@@ -1,4 +1,4 @@
-#include "sim/ct_case/arch_fit.h"
+#include "sim/ct_case/crown_fit.h"
 
 #include <gtest/gtest.h>
 
@@ -53,7 +53,7 @@ const VoxelJaw& voxel_jaw() {
   return jaw;
 }
 
-TEST(ArchFit, CrownsThatTheJawsFitMissedAreFound) {
+TEST(CrownFit, CrownsThatTheJawsFitMissedAreFound) {
   const VoxelJaw& jaw = voxel_jaw();
   const Vector3d middle = 0.5 * (bounding_box(jaw.teeth).low + bounding_box(jaw.teeth).high);
   Pose off;
@@ -61,7 +61,7 @@ TEST(ArchFit, CrownsThatTheJawsFitMissedAreFound) {
   off.t = middle - off.R * middle + Vector3d(1, 4, -5);  // behind and below the true ones
   TriMesh fitted = jaw.teeth;
   for (Vector3d& p : fitted.vertices) p = off * p;
-  const auto fit = fit_arch(jaw.volume, jaw.voxels, jaw_label, fitted, jaw.bone);
+  const auto fit = fit_crowns(jaw.volume, jaw.voxels, jaw_label, fitted, jaw.bone);
   ASSERT_TRUE(fit);
   EXPECT_GT(fit->after, fit->before + 0.3);
   double error = 0;
@@ -70,14 +70,14 @@ TEST(ArchFit, CrownsThatTheJawsFitMissedAreFound) {
   EXPECT_LT(error / static_cast<double>(fitted.vertices.size()), 0.8);
 }
 
-TEST(ArchFit, CrownsThatLieRightStay) {
+TEST(CrownFit, CrownsThatLieRightStay) {
   const VoxelJaw& jaw = voxel_jaw();
-  EXPECT_FALSE(fit_arch(jaw.volume, jaw.voxels, jaw_label, jaw.teeth, jaw.bone));
-  EXPECT_FALSE(fit_arch(jaw.volume, jaw.voxels, jaw_label, {}, jaw.bone));
-  EXPECT_FALSE(fit_arch(jaw.volume, jaw.voxels, jaw_label, jaw.teeth, {}));
+  EXPECT_FALSE(fit_crowns(jaw.volume, jaw.voxels, jaw_label, jaw.teeth, jaw.bone));
+  EXPECT_FALSE(fit_crowns(jaw.volume, jaw.voxels, jaw_label, {}, jaw.bone));
+  EXPECT_FALSE(fit_crowns(jaw.volume, jaw.voxels, jaw_label, jaw.teeth, {}));
 }
 
-TEST(ArchFit, TheLandmarksOfTheTeethMoveWithTheCrowns) {
+TEST(CrownFit, TheLandmarksOfTheTeethMoveWithTheCrowns) {
   AnatomyFit fit;
   CarriedPart teeth;
   teeth.part.role = Role::lower_teeth;

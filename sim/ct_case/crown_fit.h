@@ -10,7 +10,7 @@
 namespace condyle {
 
 /// Where the crowns of a fitted template lie in a scan.
-struct ArchFit {
+struct CrownFit {
   Pose X;                        // from where the fit of the bone put them; LPS, mm
   double moved_mm = 0;           // mean of the crowns' vertices
   double before = 0, after = 0;  // share of these at a border of the bone, 0 to 1
@@ -20,8 +20,8 @@ struct ArchFit {
 /// bone with `label`: crowns may be inclined and high otherwise than the bone below them foretells.
 /// The search reaches 10 mm and 12 degrees about the transverse axis. None where that is hardly
 /// better. teeth, template_bone: of the fitted template, in the volume's frame.
-std::optional<ArchFit> fit_arch(const Volume& volume, const BoneVoxels& bone, VoxelLabel label,
-                                const TriMesh& teeth, const TriMesh& template_bone);
+std::optional<CrownFit> fit_crowns(const Volume& volume, const BoneVoxels& bone, VoxelLabel label,
+                                   const TriMesh& teeth, const TriMesh& template_bone);
 
 /// Moves the fitted crowns of an arch, and the landmarks of its teeth.
 void move_crowns(Role teeth, const Pose& X, AnatomyFit& fit);

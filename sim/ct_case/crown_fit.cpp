@@ -1,4 +1,4 @@
-#include "sim/ct_case/arch_fit.h"
+#include "sim/ct_case/crown_fit.h"
 
 #include <algorithm>
 #include <array>
@@ -127,12 +127,12 @@ class CrownSearch {
 
 }  // namespace
 
-std::optional<ArchFit> fit_arch(const Volume& volume, const BoneVoxels& bone, VoxelLabel label,
-                                const TriMesh& teeth, const TriMesh& template_bone) {
+std::optional<CrownFit> fit_crowns(const Volume& volume, const BoneVoxels& bone, VoxelLabel label,
+                                   const TriMesh& teeth, const TriMesh& template_bone) {
   if (teeth.empty() || template_bone.empty()) return std::nullopt;
   const CrownSearch search(volume, bone, label, teeth, template_bone);
   if (!search.has_crowns()) return std::nullopt;
-  ArchFit fit;
+  CrownFit fit;
   fit.X = search.pose(search.best());
   fit.moved_mm = search.moved_mm(fit.X);
   fit.before = search.share({});
