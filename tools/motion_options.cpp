@@ -90,7 +90,8 @@ void add_motion(CLI::App& command, MotionOptions& motion) {
   command
       .add_option("--motion", motion.motion,
                   "A built-in motion (" + CLI::detail::join(builtin_motions(), ", ") +
-                      "), movements in words (\"open 40; close; protrude 6\") or a file of them "
+                      "), movements and expressions in words (\"open 40; close; smile 0.8\") or a "
+                      "file of them "
                       "(*.motion), a recorded motion, muscles:FILE, or inverse:MOTION (muscles "
                       "that follow it), or path:GRAFT (the insertion path of a planned graft): "
                       "condyle help "
@@ -108,9 +109,10 @@ void add_expression(CLI::App& command, MotionOptions& motion) {
           "--expression", motion.expression,
           "Expression of the face, alone or during the motion: " +
               CLI::detail::join(builtin_expressions(), ", ") +
-              ", each with a strength from 0 to 1 (smile:0.8) and a side (smile:1:left); or "
-              "excitations of its muscles over time (*.csv): condyle help muscles")
-      ->type_name("NAME[:STRENGTH[:SIDE]]|FILE");
+              ", or action units (AU12), each with a strength from 0 to 1 (smile:0.8) and a side "
+              "(smile:1:left), several joined by +; or excitations of its muscles over time "
+              "(*.csv): condyle help muscles")
+      ->type_name("NAME[:STRENGTH[:SIDE]]+...|FILE");
 }
 
 void add_plan_file(CLI::App& command, std::filesystem::path& plan) {
@@ -195,13 +197,21 @@ void check_motion(const MotionOptions& options, const Case& patient) {
 
 Motion motion_of(const MotionOptions& options, const Scene& scene, int threads) {
   Motion motion = jaw_motion_of(options, scene, threads);
+  if (motion.expression && !scene.tissue) {
+    motion.expression = {};
+    motion.notes.emplace_back(
+        "the motion's expressions are left out: there is no soft tissue, and they do not move "
+        "bones or teeth");
+  }
   if (options.expression.empty()) return motion;
+  if (motion.expression)
+    throw InputError("--expression " + options.expression + ": the motion " + motion.name +
+                     " has expressions of its own; give one of both");
   if (!scene.tissue)
     throw InputError("--expression " + options.expression + ": the patient has no face");
   const Expression expression = make_expression(options.expression, face_muscles_of(*scene.tissue));
   if (motion.duration_s <= 0) motion.duration_s = std::max(expression.duration_s, 0.2);
-  motion.expression = [expression](double time_s) { return expression.at(time_s); };
-  motion.expression_name = options.expression;
+  motion.expression = expression.at;
   return motion;
 }
 

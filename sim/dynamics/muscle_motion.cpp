@@ -199,6 +199,7 @@ Motion muscles_that_follow(const Motion& reference, const Case& patient,
         ++count;
         return excitations;
       });
+  motion.expression = reference.expression;
   motion.notes = notes_of(patient, jaw, settings);
   motion.notes.push_back(fmt::format(
       "the incisal point tracks {} within {:.2f} mm (root mean square; maximum {:.2f} mm)",

@@ -12,6 +12,7 @@
 #include "engine/core/error.h"
 #include "engine/core/files.h"
 #include "engine/core/similar_word.h"
+#include "sim/motion/face_movements.h"
 #include "sim/motion/joint_fit.h"
 #include "sim/motion/movements.h"
 #include "sim/motion/opening.h"
@@ -94,6 +95,10 @@ Motion stretched(Motion motion, double duration_s) {
   motion.target = [target = motion.target, fraction](double time_s) {
     return target(time_s * fraction);
   };
+  if (motion.expression)
+    motion.expression = [expression = motion.expression, fraction](double time_s) {
+      return expression(time_s * fraction);
+    };
   for (auto& phase : motion.phases) {
     phase.start_s /= fraction;
     phase.end_s /= fraction;
@@ -144,9 +149,37 @@ const Statement* widest_open(const MotionScript* script) {
   return farthest;
 }
 
+bool moves_face_only(const std::vector<Statement>& statements) {
+  return std::any_of(statements.begin(), statements.end(),
+                     [](const Statement& s) { return s.verb == Verb::face; }) &&
+         std::all_of(statements.begin(), statements.end(), [](const Statement& s) {
+           return s.verb == Verb::face || s.verb == Verb::hold;
+         });
+}
+
+/// Expressions while the jaw stays as in the case; the jaw's joints are not needed.
+Motion express(const std::string& name, const MotionScript& script, const Case& patient,
+               const MotionSettings& settings) {
+  FaceMovements face;
+  double now_s = 0;
+  Motion motion{.name = name, .target = [](double) { return Pose{}; }};
+  for (const Statement& statement : script.statements) {
+    const double start_s = now_s;
+    face.add(statement, start_s);
+    const bool holds = statement.verb == Verb::hold;
+    now_s = std::max(start_s + (holds ? *statement.amount : 0), face.end_s());
+    motion.phases.push_back({holds ? "hold" : "expression", start_s, now_s});
+  }
+  motion.duration_s = now_s;
+  face.finish(motion, patient);
+  return stretched(std::move(motion), settings.duration_s);
+}
+
 /// `round`: ends in the rest pose of the case, where that is not its bite.
 Motion move(const std::string& name, const MotionScript* script, const Case& patient,
             const ContactModel& contacts, const MotionSettings& settings, bool round = false) {
+  if (script && moves_face_only(script->statements))
+    return express(name, *script, patient, settings);
   MotionParameters parameters = settings.parameters.over(patient.motion);
   if (script) parameters = script->parameters.over(parameters);
   const bool aside = script && goes_aside(script->statements);
@@ -177,10 +210,13 @@ Motion move(const std::string& name, const MotionScript* script, const Case& pat
   const auto guide = std::make_shared<BiteGuide>(patient, *joints, parameters);
   Movements movements(joints, guide, reach, parameters,
                       [&](const Pose& X_CM) { return bones_free(patient, contacts, X_CM); });
+  FaceMovements face;
   if (script) {
     for (Statement statement : script->statements) {
       if (statement.verb == Verb::open && !statement.amount) statement.amount = plain_opening;
+      face.add(statement, movements.now_s());
       movements.add(statement);
+      movements.wait_until(face.end_s());
     }
     if (round && guide->bite_theta() != 0) movements.back("back to the start", {});
   } else {
@@ -196,6 +232,7 @@ Motion move(const std::string& name, const MotionScript* script, const Case& pat
   }
   if (!guide->notes().empty()) notes.push_back(guide->notes());
   Motion motion = movements.finish(name);
+  face.finish(motion, patient);
   motion.notes.insert(motion.notes.begin(), notes.begin(), notes.end());
   add_inputs(motion, *joints, parameters);
   add_found(motion, *joints, limits);
@@ -223,7 +260,8 @@ namespace {
 [[noreturn]] void refuse_motion(const std::string& spec) {
   throw InputError(fmt::format(
       "unknown motion \"{}\"{}; give one of {}, a motion script such as \"open 40; close; "
-      "protrude 6\", a script file (*.motion), a recording, muscles:FILE or inverse:MOTION",
+      "protrude 6\" or \"smile 0.8; rest\", a script file (*.motion), a recording, muscles:FILE or "
+      "inverse:MOTION",
       spec, suggestion(spec, builtin_motions()), fmt::join(builtin_motions(), ", ")));
 }
 

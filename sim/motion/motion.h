@@ -52,7 +52,7 @@ struct Motion {
   double duration_s = 0;
   bool recorded = false;  // a recording is played back unchanged unless contact is requested
   std::function<Pose(double time_s)> target;  // X_CM; clamps the time to [0, duration_s]
-  std::vector<std::string> notes;             // how it was generated, as sentences
+  std::vector<std::string> notes = {};        // how it was generated, as sentences
   std::vector<double> sample_times = {};      // of a recording, increasing from 0 to duration_s
 
   std::vector<MotionPhase> phases = {};  // of a built-in motion, in order
@@ -64,7 +64,6 @@ struct Motion {
   std::function<MuscleStates(double time_s)> muscles = {};
   // 0 to 1 at a time, of each muscle of the face; empty: they are relaxed.
   std::function<std::vector<double>(double time_s)> expression = {};
-  std::string expression_name = {};
   // X_CH at a time, rest to now, where muscles attach to a hyoid; empty: it is fixed.
   std::function<Pose(double time_s)> hyoid = {};
   std::optional<RecordingFacts> recording = {};  // of a file
@@ -86,7 +85,7 @@ const std::vector<std::string>& builtin_motions();
 /// throws: InputError as make_motion().
 void check_motion(const std::string& spec, const MotionSettings& settings = {});
 
-/// The motion called `spec`: a built-in name, a motion script ("open 40; close; protrude 6"), a
+/// The motion called `spec`: a built-in name, a motion script ("open 40; close; smile 0.8"), a
 /// script file (*.motion), or a pose file (CSV). `contacts`, of the same patient, limits the motion
 /// to what the bones permit.
 /// throws: InputError for an unknown name (listing the valid ones), invalid settings or a bad file.

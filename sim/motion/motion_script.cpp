@@ -9,6 +9,7 @@
 #include <map>
 
 #include "engine/core/error.h"
+#include "sim/muscles/expression_names.h"
 
 namespace condyle {
 namespace {
@@ -52,7 +53,14 @@ std::optional<double> number_of(const std::string& word) {
 std::string list_of_verbs() {
   std::string names;
   for (const auto& [name, rule] : verbs()) names += name + ", ";
-  return names + "set";
+  return names + "neutral, set, or an expression (" + list_expressions() + ")";
+}
+
+bool is_expression(const std::string& word) { return word == "neutral" || find_expression(word); }
+
+bool is_number(const std::string& text) {
+  return !text.empty() && (std::isdigit(static_cast<unsigned char>(text[0])) || text[0] == '-' ||
+                           text[0] == '+' || text[0] == '.');
 }
 
 /// Reads the words of one statement from left to right.
@@ -114,10 +122,62 @@ class Reader {
   const std::string& source_;
 };
 
-Statement read_movement(Reader& reader, const std::string& word, const VerbRule& rule) {
-  Statement statement;
+/// One expression with its strength and side; `word` is its name.
+FaceChange read_face_change(Reader& reader, const std::string& word) {
+  FaceChange change;
+  if (word != "neutral") {
+    change.expression = find_expression(word)->name;
+    if (!reader.done() && is_number(reader.peek()))
+      change.strength = reader.number("strength", "", 0, 1);
+  }
+  if (!reader.done() && (reader.peek() == "left" || reader.peek() == "right")) {
+    const bool left = reader.take() == "left";
+    change.left = left;
+    change.right = !left;
+  }
+  return change;
+}
+
+/// Expressions joined by "and"; `word` is the first one's name. Returns the movement of the jaw
+/// that follows a last "and"; empty: none.
+std::string read_face(Reader& reader, std::string word, Statement& statement) {
+  for (;;) {
+    statement.face.push_back(read_face_change(reader, word));
+    if (reader.done()) return "";
+    word = reader.take();
+    if (word == "over") {
+      statement.face_duration_s = reader.number("over", "s", 0.05, 3600);
+      if (reader.done()) return "";
+      word = reader.take();
+    }
+    if (word != "and")
+      reader.refuse(
+          "is not understood; a strength of 0 to 1 may be followed by left or right, over (s), and "
+          "another expression or movement after \"and\"");
+    if (reader.done()) reader.refuse("must be followed by an expression or a movement");
+    word = reader.take();
+    if (is_expression(word)) continue;
+    if (!verbs().contains(word))
+      reader.refuse("is neither an expression nor a movement; valid ones are " + list_of_verbs());
+    return word;
+  }
+}
+
+/// Expressions after the movement of a jaw.
+void read_face_after_jaw(Reader& reader, Statement& statement) {
+  const std::string word = reader.done() ? "" : reader.take();
+  if (!is_expression(word) || !statement.face.empty())
+    reader.refuse(
+        "is not the name of an expression; one movement of the jaw may be joined with "
+        "expressions (" +
+        list_expressions() + ") by \"and\"");
+  if (!read_face(reader, word, statement).empty())
+    reader.refuse("is a second movement of the jaw at the same time");
+}
+
+void read_movement(Reader& reader, const std::string& word, const VerbRule& rule,
+                   Statement& statement) {
   statement.verb = rule.verb;
-  statement.where = reader.where();
   const bool chews = word == "chew";
   if (chews) {
     if (reader.done()) reader.refuse("must be followed by left or right");
@@ -125,10 +185,6 @@ Statement read_movement(Reader& reader, const std::string& word, const VerbRule&
     if (side != "left" && side != "right") reader.refuse("must be left or right");
     statement.verb = side == "left" ? Verb::chew_left : Verb::chew_right;
   }
-  const auto is_number = [](const std::string& text) {
-    return !text.empty() && (std::isdigit(static_cast<unsigned char>(text[0])) || text[0] == '-' ||
-                             text[0] == '+' || text[0] == '.');
-  };
   if (!reader.done() && is_number(reader.peek())) {
     if (!*rule.unit) {
       reader.take();
@@ -140,7 +196,9 @@ Statement read_movement(Reader& reader, const std::string& word, const VerbRule&
   if (rule.verb == Verb::hinge && !statement.amount) reader.refuse("must be followed by degrees");
   while (!reader.done()) {
     const std::string option = reader.take();
-    if (option == "over" && rule.verb != Verb::hold)
+    if (option == "and")
+      read_face_after_jaw(reader, statement);
+    else if (option == "over" && rule.verb != Verb::hold)
       statement.duration_s = reader.number("over", "s", 0.05, 3600);
     else if (option == "at" && rule.verb != Verb::hold && !chews)
       statement.speed_mm_s = reader.number("at", "mm/s", 1, 600);
@@ -161,6 +219,16 @@ Statement read_movement(Reader& reader, const std::string& word, const VerbRule&
                         : std::string("is not understood; the amount may be followed by over "
                                       "(s) or at (mm/s)"));
   }
+}
+
+/// A statement whose first word, `word`, was taken.
+Statement read_statement(Reader& reader, std::string word) {
+  Statement statement{.verb = Verb::face, .where = reader.where()};
+  if (is_expression(word)) word = read_face(reader, word, statement);
+  if (word.empty()) return statement;
+  const auto rule = verbs().find(word);
+  if (rule == verbs().end()) reader.refuse("is not a movement; valid ones are " + list_of_verbs());
+  read_movement(reader, word, rule->second, statement);
   return statement;
 }
 
@@ -196,7 +264,7 @@ std::string first_word(const std::string& text) {
 
 bool is_motion_script(const std::string& text) {
   const std::string word = first_word(text);
-  const bool verb = verbs().contains(word) || word == "set";
+  const bool verb = verbs().contains(word) || word == "set" || is_expression(word);
   return verb || text.find(';') != std::string::npos || text.find('\n') != std::string::npos;
 }
 
@@ -221,12 +289,9 @@ MotionScript parse_motion_script(const std::string& text, const std::string& sou
       read_setting(reader, script.parameters);
       return;
     }
-    const auto rule = verbs().find(verb);
-    if (rule == verbs().end())
-      reader.refuse("is not a movement; valid ones are " + list_of_verbs());
     if (script.statements.size() == max_statements)
       reader.refuse(fmt::format("exceeds the limit of {} movements", max_statements));
-    script.statements.push_back(read_movement(reader, verb, rule->second));
+    script.statements.push_back(read_statement(reader, verb));
   };
   for (std::size_t i = 0; i <= text.size(); ++i) {
     const char c = i < text.size() ? text[i] : '\n';

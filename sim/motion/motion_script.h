@@ -21,7 +21,15 @@ enum class Verb {
   hold,
   posselt,
   chew_left,
-  chew_right
+  chew_right,
+  face  // the jaw stays
+};
+
+/// A change of the face within a statement.
+struct FaceChange {
+  std::string expression = {};  // a name of sim/muscles/expression_names.h; empty: relaxed
+  double strength = 1;
+  bool left = true, right = true;  // sides
 };
 
 /// One statement of a motion script.
@@ -31,7 +39,9 @@ struct Statement {
   std::optional<double> duration_s = {};  // "over 2"
   std::optional<double> speed_mm_s = {};  // "at 60"
   std::optional<double> rate_hz = {}, size_mm = {}, width_mm = {};  // of chewing
-  std::string where = {};                                           // "line 3, open", for messages
+  std::vector<FaceChange> face = {};                                // together with the jaw
+  std::optional<double> face_duration_s = {};
+  std::string where = {};  // "line 3, open", for messages
 };
 
 /// A motion script: statements separated by line breaks or ';'; '#' starts a comment.
@@ -45,9 +55,13 @@ struct Statement {
 ///   hold 0.5             seconds
 ///   posselt              the border movements
 ///   chew left 10 rate 1.4 size 15 width 5
+///   smile 0.8 over 0.5   an expression or action unit, 0 to 1, both sides; seconds
+///   AU12 0.8 left and AU16 0.3 right and open 10 over 1    at the same time
+///   neutral over 1       the face relaxes; so it does at rest
 ///   set bennett 10       before the first movement; any motion parameter
 ///
-/// Units may follow numbers (mm, s, deg, mm/s, Hz, cycles).
+/// A statement lasts until jaw and face have arrived. Units may follow numbers (mm, s, deg, mm/s,
+/// Hz, cycles).
 struct MotionScript {
   std::vector<Statement> statements;
   MotionParameters parameters;

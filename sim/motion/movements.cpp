@@ -131,6 +131,10 @@ void Movements::hold(double seconds) {
   append(std::move(still), {.duration_s = seconds, .speed_mm_s = {}});
 }
 
+void Movements::wait_until(double time_s) {
+  if (time_s > now_s_ + 1e-9) hold(time_s - now_s_);
+}
+
 /// Moves through free space with rotation and translation coupled as in opening; deviations of
 /// start and target from that coupling are blended. The timing follows the descent of the incisal
 /// point.
@@ -327,6 +331,9 @@ void Movements::add(const Statement& statement) {
     case Verb::chew_left:
     case Verb::chew_right:
       chew(statement.verb == Verb::chew_left, statement);
+      break;
+    case Verb::face:
+      begin("expression");
       break;
   }
 }

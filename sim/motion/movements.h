@@ -34,6 +34,9 @@ class Movements {
             const OpeningLimits& limits, const MotionParameters& parameters, BonesFree free);
 
   void add(const Statement& statement);
+  /// Holds the pose until a time; earlier times change nothing.
+  void wait_until(double time_s);
+  double now_s() const { return now_s_; }
   /// Returns to the rest pose of the case.
   void back(const std::string& phase, std::optional<double> duration_s);
 

@@ -14,69 +14,37 @@
 namespace condyle {
 namespace {
 
-constexpr double onset_s = 0.5, held_until_s = 1;
-
-/// Excitation of a kind of muscle, on both sides.
-struct KindExcitation {
-  const char* kind;
-  double value;
-};
-struct BuiltinExpression {
-  const char* name;
-  std::vector<KindExcitation> kinds;
-};
-
-/// Brows and lids have no muscles yet.
-const std::vector<BuiltinExpression>& builtin_list() {
-  static const std::vector<BuiltinExpression> all = {
-      {"smile",
-       {{"zygomaticus_major", 1},
-        {"zygomaticus_minor", 0.5},
-        {"levator_labii_superioris", 0.3},
-        {"risorius", 0.3}}},
-      {"open-mouth-smile",
-       {{"zygomaticus_major", 1},
-        {"zygomaticus_minor", 0.5},
-        {"levator_labii_superioris", 0.5},
-        {"risorius", 0.3},
-        {"depressor_labii_inferioris", 0.4}}},
-      {"sad", {{"depressor_anguli_oris", 0.8}, {"mentalis", 0.3}}},
-      {"disgust", {{"levator_labii_alaeque_nasi", 0.8}, {"levator_labii_superioris", 0.6}}},
-  };
-  return all;
-}
-
-struct BuiltinSpec {
-  const BuiltinExpression* expression = nullptr;
-  double strength = 1;
-  std::string side;  // empty: both
-};
+constexpr double held_until_s = 1;
 
 std::filesystem::path file_of(const std::string& spec) { return spec; }
 
 bool names_file(const std::string& spec) { return lower_case(spec).ends_with(".csv"); }
 
-BuiltinSpec parse_builtin(const std::string& spec) {
-  const std::string option = "--expression " + shortened(spec);
-  const auto fields = fields_of(spec, ':');
-  BuiltinSpec parsed;
-  for (const BuiltinExpression& each : builtin_list())
-    if (!fields.empty() && fields[0] == each.name) parsed.expression = &each;
-  if (!parsed.expression) {
-    std::string known;
-    for (const auto& name : builtin_expressions()) known += name + ", ";
-    throw InputError(option + ": there is no such expression; valid ones are " + known +
-                     "or a CSV file (*.csv)");
-  }
-  if (fields.size() > 1) parsed.strength = parse_number(std::string(fields[1]), "--expression");
-  if (!(parsed.strength >= 0 && parsed.strength <= 1))
-    throw InputError(
-        fmt::format("{}: the strength must be 0 to 1, not {}", option, parsed.strength));
-  if (fields.size() > 2) parsed.side = fields[2];
-  if (fields.size() > 3 ||
-      !(parsed.side.empty() || parsed.side == "left" || parsed.side == "right"))
+/// One NAME[:STRENGTH[:left|right]]; `option` begins messages.
+ExpressionLevel parse_level(std::string_view text, const std::string& option) {
+  const auto fields = fields_of(text, ':');
+  const std::string name(fields.empty() ? std::string_view() : fields[0]);
+  const NamedExpression* expression = find_expression(name);
+  if (!expression)
+    throw InputError(option + ": there is no such expression as \"" + shortened(name) +
+                     "\"; valid ones are " + list_expressions() + ", or a CSV file (*.csv)");
+  double strength = 1;
+  if (fields.size() > 1) strength = parse_number(std::string(fields[1]), "--expression");
+  if (!(strength >= 0 && strength <= 1))
+    throw InputError(fmt::format("{}: the strength must be 0 to 1, not {}", option, strength));
+  const std::string_view side = fields.size() > 2 ? fields[2] : std::string_view();
+  if (fields.size() > 3 || !(fields.size() < 3 || side == "left" || side == "right"))
     throw InputError(option + ": must be NAME[:STRENGTH[:left|right]]");
-  return parsed;
+  return {.name = expression->name,
+          .left = side == "right" ? 0 : strength,
+          .right = side == "left" ? 0 : strength};
+}
+
+std::vector<ExpressionLevel> parse_levels(const std::string& spec) {
+  std::vector<ExpressionLevel> levels;
+  for (const auto text : fields_of(spec, '+'))
+    levels.push_back(parse_level(text, "--expression " + shortened(spec)));
+  return levels;
 }
 
 std::vector<std::size_t> muscles_called(std::string_view name,
@@ -87,21 +55,21 @@ std::vector<std::size_t> muscles_called(std::string_view name,
   return found;
 }
 
-Expression builtin_expression(const std::string& spec, std::span<const FaceMuscle> muscles) {
-  const BuiltinSpec parsed = parse_builtin(spec);
-  const std::string other = parsed.side.empty() ? "" : parsed.side == "left" ? "right_" : "left_";
-  Expression made{
-      .name = spec, .duration_s = held_until_s, .muscles = muscles.size(), .channels = {}};
-  for (const auto& [kind, value] : parsed.expression->kinds) {
-    std::vector<std::size_t> excited = muscles_called(kind, muscles);
-    std::erase_if(excited, [&](std::size_t m) {
-      return !other.empty() && muscles[m].name.starts_with(other);
-    });
-    made.channels.push_back(
-        {ExcitationCurve({0, onset_s}, {0, value * parsed.strength}, Interpolation::cubic),
-         std::move(excited)});
+/// Values of the columns of a file, and the muscles that each excites.
+struct ExcitationColumn {
+  ExcitationCurve curve;
+  std::vector<std::size_t> muscles;
+};
+
+std::vector<double> excitations_of(std::span<const ExcitationColumn> columns, std::size_t muscles,
+                                   double time_s) {
+  std::vector<double> values(muscles, 0.0);
+  for (const ExcitationColumn& column : columns) {
+    const double value = column.curve(time_s);
+    for (const std::size_t m : column.muscles) values[m] += value;
   }
-  return made;
+  for (double& value : values) value = std::clamp(value, 0.0, 1.0);
+  return values;
 }
 
 Expression expression_of_file(const std::string& spec, std::span<const FaceMuscle> muscles) {
@@ -122,10 +90,7 @@ Expression expression_of_file(const std::string& spec, std::span<const FaceMuscl
   std::vector<double> times;
   for (std::size_t row = 0; row < table.rows(); ++row)
     times.push_back(table.at(row, time) - table.at(0, time));
-  Expression made{.name = file.filename().string(),
-                  .duration_s = times.back(),
-                  .muscles = muscles.size(),
-                  .channels = {}};
+  std::vector<ExcitationColumn> columns;
   for (std::size_t c = 0; c < names.size(); ++c) {
     if (c == time) continue;
     std::vector<std::size_t> excited = muscles_called(names[c], muscles);
@@ -144,39 +109,55 @@ Expression expression_of_file(const std::string& spec, std::span<const FaceMuscl
                          fmt::format("an excitation must be 0 to 1, not {}", value));
       values.push_back(value);
     }
-    made.channels.push_back(
+    columns.push_back(
         {ExcitationCurve(times, std::move(values), Interpolation::smooth), std::move(excited)});
   }
-  return made;
+  return {.name = file.filename().string(),
+          .duration_s = times.back(),
+          .at = [columns = std::move(columns), count = muscles.size()](double time_s) {
+            return excitations_of(columns, count, time_s);
+          }};
 }
 
 }  // namespace
 
-std::vector<double> Expression::at(double time_s) const {
-  std::vector<double> values(muscles, 0.0);
-  for (const Channel& channel : channels) {
-    const double value = channel.curve(time_s);
-    for (const std::size_t m : channel.muscles) values[m] += value;
+Expression expression_through(std::string name, std::span<const ExpressionKey> keys,
+                              std::span<const FaceMuscle> muscles) {
+  std::vector<double> times;
+  std::vector<std::vector<double>> values;
+  for (const ExpressionKey& key : keys) {
+    times.push_back(key.time_s);
+    values.push_back(excitation_of(key.levels, muscles));
   }
-  for (double& value : values) value = std::clamp(value, 0.0, 1.0);
-  return values;
-}
-
-std::vector<std::string> builtin_expressions() {
-  std::vector<std::string> names;
-  for (const BuiltinExpression& each : builtin_list()) names.emplace_back(each.name);
-  return names;
+  const double end_s = times.back();
+  return {.name = std::move(name),
+          .duration_s = end_s,
+          .at = [times = std::move(times), values = std::move(values)](double time_s) {
+            const auto next = static_cast<std::size_t>(
+                std::upper_bound(times.begin(), times.end(), time_s) - times.begin());
+            if (next == 0) return values.front();
+            if (next == times.size()) return values.back();
+            const double u = (time_s - times[next - 1]) / (times[next] - times[next - 1]);
+            const double s = u * u * (3 - 2 * u);
+            std::vector<double> now = values[next - 1];
+            for (std::size_t m = 0; m < now.size(); ++m) now[m] += s * (values[next][m] - now[m]);
+            return now;
+          }};
 }
 
 void check_expression(const std::string& spec) {
   if (!names_file(spec))
-    parse_builtin(spec);
+    parse_levels(spec);
   else if (!std::filesystem::is_regular_file(file_of(spec)))
     throw InputError(file_of(spec), "", "there is no such file");
 }
 
 Expression make_expression(const std::string& spec, std::span<const FaceMuscle> muscles) {
-  return names_file(spec) ? expression_of_file(spec, muscles) : builtin_expression(spec, muscles);
+  if (names_file(spec)) return expression_of_file(spec, muscles);
+  const std::vector<ExpressionLevel> levels = parse_levels(spec);
+  const ExpressionKey keys[] = {
+      {.time_s = 0}, {.time_s = expression_onset_s, .levels = levels}, {held_until_s, levels}};
+  return expression_through(spec, keys, muscles);
 }
 
 }  // namespace condyle

@@ -1,9 +1,12 @@
 #include "sim/report/expression_findings.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 #include "engine/core/units.h"
+#include "sim/muscles/expression_names.h"
 
 namespace condyle {
 namespace {
@@ -17,13 +20,20 @@ struct FacePoint {
   Vector3d moved() const { return now - rest; }
 };
 
+bool is_full_smile(std::span<const double> excitation, std::span<const FaceMuscle> muscles) {
+  const ExpressionLevel full{.name = "smile", .left = 1, .right = 1};
+  const std::vector<double> smile = excitation_of({&full, 1}, muscles);
+  return std::equal(smile.begin(), smile.end(), excitation.begin(), excitation.end(),
+                    [](double a, double b) { return std::abs(a - b) < 1e-6; });
+}
+
 }  // namespace
 
-std::vector<Finding> expression_findings(const Scene& scene, const Motion& motion,
-                                         const TissueState& tissue) {
+std::vector<Finding> expression_findings(const Scene& scene, const TissueState& tissue) {
   std::vector<Finding> list;
   if (!scene.tissue || tissue.excitation.empty()) return list;
-  const bool smile = motion.expression_name == "smile" || motion.expression_name == "smile:1";
+  const auto& muscles = face_muscles_of(*scene.tissue);
+  const bool smile = is_full_smile(tissue.excitation, muscles);
   const auto add = [&](const std::string& name, const char* unit, double value, double low,
                        double high, const char* published) {
     list.push_back({.name = name,
@@ -68,7 +78,6 @@ std::vector<Finding> expression_findings(const Scene& scene, const Motion& motio
   if (nose && red)
     add("change of the upper lip's skin, subnasale to labrale superius", "%",
         change_of_height(*red), 1, 0, "");
-  const auto& muscles = face_muscles_of(*scene.tissue);
   const auto length = face_muscle_lengths(*scene.tissue, tissue),
              rest_length = face_muscle_lengths(*scene.tissue, at_rest);
   for (std::size_t m = 0; m < muscles.size(); ++m)

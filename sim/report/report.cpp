@@ -225,7 +225,7 @@ Json MotionReport::motion_json() const {
 
 std::vector<Finding> MotionReport::all_findings() const {
   std::vector<Finding> found = findings(scene_, motion_, series_);
-  for (Finding& finding : expression_findings(scene_, motion_, expressed_))
+  for (Finding& finding : expression_findings(scene_, expressed_))
     found.push_back(std::move(finding));
   return found;
 }

@@ -40,6 +40,43 @@ TEST(Expression, ASmileIsRecordedAndMeasured) {
   EXPECT_NE(done.err.find("motion"), std::string::npos) << done.err;
 }
 
+std::string notes_of(const fs::path& folder) {
+  return nlohmann::json::parse(read_text(folder / "report.json"))["motion"]["notes"].dump();
+}
+
+TEST(Expression, WordsOfAMotionMoveTheFaceAndTheJaw) {
+  const Folder folder;
+  const std::string file = folder / "smile.motion";
+  write_text(file, "smile 0.5 left over 0.3 and open 6 over 0.3  # both at the same time\n");
+  const fs::path out = folder / "out";
+  const Outcome done = condyle({"run", "--motion", file, "--frames", "2", "--out", out});
+  ASSERT_EQ(done.code, 0) << done.err;
+  const auto report = nlohmann::json::parse(read_text(out / "report.json"));
+  EXPECT_NEAR(double(report["opening"]["max_opening_mm"]), 6, 0.5);
+  double left = 0, right = 0;
+  for (const auto& finding : report["findings"]) {
+    const std::string quantity = finding["quantity"];
+    if (quantity == "left corner of the mouth: direction above the horizontal, frontal")
+      EXPECT_FALSE(finding.contains("band")) << "it is no full smile";
+    if (quantity == "left zygomaticus major: length over that at rest") left = finding["value"];
+    if (quantity == "right zygomaticus major: length over that at rest") right = finding["value"];
+  }
+  EXPECT_LT(left, right - 0.03) << "only the left one pulls";
+}
+
+TEST(Expression, WordsAreLeftOutWithANoteWhereThereIsNoTissue) {
+  const Folder folder;
+  const fs::path out = folder / "out";
+  const Outcome done = condyle({"check", "--motion", "smile; open 5", "--frames", "2"});
+  EXPECT_EQ(done.code, 0) << done.err;
+  EXPECT_NE(done.err.find("expressions are left out"), std::string::npos) << done.err;
+  ASSERT_EQ(
+      condyle({"run", "--motion", "smile; hold 0.2", "--no-tissue", "--frames", "2", "--out", out})
+          .code,
+      0);
+  EXPECT_NE(notes_of(out).find("expressions are left out"), std::string::npos);
+}
+
 TEST(Expression, WrongOnesAreRefused) {
   const Folder folder;
   const auto expect_refused = [&](const std::vector<std::string>& of_expression,
@@ -54,6 +91,10 @@ TEST(Expression, WrongOnesAreRefused) {
   expect_refused({"--expression", "smirk"}, "there is no such expression");
   expect_refused({"--expression", "smile:2"}, "0 to 1, not 2");
   expect_refused({"--expression", "smile:1:up"}, "left|right");
+  expect_refused({"--expression", "AU99"}, "AU12");
+  expect_refused({"--motion", "smile 1.2"}, "strength must be 0 to 1");
+  expect_refused({"--motion", "smirk; close"}, "\"smirk\"");
+  expect_refused({"--motion", "smile", "--expression", "sad"}, "expressions of its own");
   expect_refused({"--expression", "smile", "--no-tissue"}, "needs the soft tissue");
   expect_refused({"--expression", folder / "none.csv"}, "no such file");
   write_text(folder / "high.csv", "time_s,zygomaticus_major\n0,0\n1,1.5\n");

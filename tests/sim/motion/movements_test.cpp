@@ -7,7 +7,9 @@
 #include "engine/core/error.h"
 #include "sim/motion/measure_pose.h"
 #include "sim/motion/motion.h"
+#include "sim/muscles/default_face_muscles.h"
 #include "tests/sim/motion/jaws.h"
+#include "tests/support/builtin.h"
 #include "tests/support/real_cases.h"
 
 namespace condyle::test {
@@ -67,6 +69,59 @@ TEST(Movements, ReachTheirTargets) {
   EXPECT_NEAR(moved.incisor(moved.end_of("laterotrusion left")).x(), 7, 0.02);
   EXPECT_NEAR(moved.incisor(moved.end_of("laterotrusion right")).x(), -5, 0.02);
   EXPECT_NEAR(-moved.incisor(moved.motion.duration_s).z(), 3, 1e-3);
+}
+
+Case expressive_jaw() {
+  Case patient = free_jaw();
+  for (const auto& [name, at] : builtin().landmarks.points) patient.landmarks.points[name] = at;
+  return patient;
+}
+
+/// Excitation of the left zygomaticus major.
+double left_zygomatic(const Moved& moved, double time_s) {
+  const std::vector<FaceMuscle> muscles = default_face_muscles(moved.patient);
+  const std::vector<double> excitation = moved.motion.expression(time_s);
+  for (std::size_t m = 0; m < muscles.size(); ++m)
+    if (muscles[m].name == "left_zygomaticus_major") return excitation.at(m);
+  ADD_FAILURE();
+  return 0;
+}
+
+TEST(Movements, AnExpressionLastsUntilRestAndTakesItsTime) {
+  const Moved moved(expressive_jaw(), "smile 0.8 over 0.4; open 10 over 1; rest");
+  EXPECT_LT(moved.incisor(0.4).norm(), 1e-9);
+  EXPECT_EQ(left_zygomatic(moved, 0), 0);
+  EXPECT_NEAR(left_zygomatic(moved, 0.2), 0.4, 1e-9);
+  EXPECT_NEAR(left_zygomatic(moved, 1.4), 0.8, 1e-9);
+  EXPECT_NEAR(-moved.incisor(1.4).z(), 10, 1e-3);
+  EXPECT_NEAR(left_zygomatic(moved, 1.9), 0.4, 1e-9) << "the face relaxes within 1 s";
+  EXPECT_EQ(left_zygomatic(moved, moved.motion.duration_s), 0);
+  EXPECT_GE(moved.motion.duration_s, 2.4 - 1e-9);
+}
+
+TEST(Movements, AnExpressionAndTheJawMoveTogetherWhereJoined) {
+  const Moved moved(expressive_jaw(), "smile left over 2 and open 10 over 1; sad; neutral over 3");
+  EXPECT_NEAR(-moved.incisor(1).z(), 10, 1e-3);
+  EXPECT_NEAR(left_zygomatic(moved, 1), 0.5, 1e-9);
+  EXPECT_NEAR(-moved.incisor(2).z(), 10, 1e-3);
+  EXPECT_NEAR(left_zygomatic(moved, 2), 1, 1e-9);
+  EXPECT_NEAR(left_zygomatic(moved, 2.5), 0, 1e-9) << "an expression replaces the last";
+  EXPECT_NEAR(moved.motion.duration_s, 5.5, 1e-9);
+  const Moved units(expressive_jaw(), "AU12 0.6 left; AU10; smile right; hold 1; AU12 0.2 left");
+  EXPECT_NEAR(left_zygomatic(units, 2.5), 0.6, 1e-9) << "action units and other sides stay";
+  EXPECT_NEAR(left_zygomatic(units, 3), 0.2, 1e-9);
+  EXPECT_LT(units.incisor(3).norm(), 1e-9);
+}
+
+TEST(Movements, ALongerMotionHasASlowerExpression) {
+  MotionSettings slow;
+  slow.duration_s = 5;
+  EXPECT_NEAR(left_zygomatic(Moved(expressive_jaw(), "smile", slow), 2.5), 0.5, 1e-9);
+}
+
+TEST(Movements, AnExpressionNeedsTheLandmarksOfItsMuscles) {
+  expect_refused(free_jaw(), "smile; open 10", "left_malar");
+  expect_refused(free_jaw(), "smile", "left_malar");
 }
 
 TEST(Movements, ContactMovementsGlideOnTheTeethAndOpenOverTheIncisors) {

@@ -44,9 +44,52 @@ TEST(MotionScript, ReadsMovementsOnLinesAndBetweenSemicolons) {
   EXPECT_EQ(script.statements[7].duration_s, 8);
 }
 
+TEST(MotionScript, ReadsExpressionsAloneAndBesideTheJaw) {
+  const auto script = parse_motion_script(
+      "smile 0.8 over 0.5; open 10; AU12 left and au15 .3 right over 2 s and open 20 over 1;"
+      "close at 10 and sad; neutral right; smile",
+      "a.motion");
+  ASSERT_EQ(script.statements.size(), 6u);
+  const Statement& smile = script.statements[0];
+  EXPECT_EQ(smile.verb, Verb::face);
+  ASSERT_EQ(smile.face.size(), 1u);
+  EXPECT_EQ(smile.face[0].expression, "smile");
+  EXPECT_EQ(smile.face[0].strength, 0.8);
+  EXPECT_TRUE(smile.face[0].left && smile.face[0].right);
+  EXPECT_EQ(smile.face_duration_s, 0.5);
+  EXPECT_TRUE(script.statements[1].face.empty());
+  const Statement& both = script.statements[2];
+  EXPECT_EQ(both.verb, Verb::open);
+  EXPECT_EQ(both.amount, 20);
+  EXPECT_EQ(both.duration_s, 1);
+  EXPECT_EQ(both.face_duration_s, 2);
+  ASSERT_EQ(both.face.size(), 2u);
+  EXPECT_EQ(both.face[0].expression, "AU12");
+  EXPECT_TRUE(both.face[0].left && !both.face[0].right);
+  EXPECT_EQ(both.face[1].strength, 0.3);
+  EXPECT_TRUE(!both.face[1].left && both.face[1].right);
+  EXPECT_EQ(script.statements[3].verb, Verb::close);
+  EXPECT_EQ(script.statements[3].speed_mm_s, 10);
+  EXPECT_EQ(script.statements[3].face.size(), 1u);
+  EXPECT_EQ(script.statements[4].face[0].expression, "");
+  EXPECT_FALSE(script.statements[4].face[0].left);
+  EXPECT_EQ(script.statements[5].face[0].strength, 1);
+}
+
 TEST(MotionScript, NamesLineAndWordOfASyntaxError) {
   const std::vector<std::pair<std::string, std::vector<std::string>>> wrong = {
       {"open forty", {"line 1", "word 2", "\"forty\"", "open"}},
+      {"smile 1.5", {"line 1", "word 2", "\"1.5\"", "0 to 1"}},
+      {"smile -0.1", {"\"-0.1\"", "0 to 1"}},
+      {"close; smirk 0.5", {"\"smirk\"", "not a movement", "AU12"}},
+      {"smile 0.5 up", {"word 3", "\"up\"", "left or right"}},
+      {"smile left 8", {"word 3", "\"8\"", "left or right"}},
+      {"smile over 0", {"\"0\"", "0.05 to 3600"}},
+      {"smile and", {"\"and\"", "must be followed by"}},
+      {"smile and smirk", {"\"smirk\"", "neither an expression nor a movement"}},
+      {"open 10 and left 5", {"\"left\"", "not the name of an expression"}},
+      {"open 10 and smile and close", {"\"close\"", "second movement"}},
+      {"neutral 0.5", {"\"0.5\"", "not understood"}},
       {"close\n\nopne 40", {"line 3", "\"opne\"", "not a movement", "protrude"}},
       {"open 400", {"\"400\"", "range", "80 mm"}},
       {"open -3", {"\"-3\"", "range"}},

@@ -30,12 +30,42 @@ TEST(Expression, ABuiltinOneGrowsToItsStrengthOnItsSide) {
   EXPECT_EQ(smile.at(3)[1], 0);
 }
 
+TEST(Expression, ActionUnitsAddUpOnTheirSides) {
+  const Expression both = make_expression("au12:0.25+smile:0.5:left", pair_of_muscles());
+  EXPECT_NEAR(both.at(1)[0], 0.75, 1e-12);
+  EXPECT_NEAR(both.at(1)[1], 0.25, 1e-12);
+  EXPECT_EQ(make_expression("AU12+smile", pair_of_muscles()).at(1)[0], 1);
+}
+
+TEST(Expression, ASideExcitesMusclesInTheMiddle) {
+  const std::vector<FaceMuscle> ring = {
+      {.name = "orbicularis_oris_marginal", .kind = "orbicularis_oris_marginal", .lines = {}}};
+  EXPECT_NEAR(make_expression("AU23:0.5:left+AU23:0.2:right", ring).at(1)[0], 0.7, 1e-12);
+  const ExpressionLevel level{.name = "AU23", .left = 0.2, .right = 0.6};
+  EXPECT_EQ(excitation_of({&level, 1}, ring)[0], 0.6);
+}
+
+TEST(Expression, RisesAndFallsBetweenItsTimesWithoutOvershoot) {
+  const std::vector<ExpressionLevel> smile = {{.name = "smile", .left = 1, .right = 0.5}};
+  const std::vector<ExpressionKey> keys = {{0, {}}, {1, smile}, {2, smile}, {4, {}}};
+  const Expression made = expression_through("smile", keys, pair_of_muscles());
+  EXPECT_EQ(made.duration_s, 4);
+  EXPECT_NEAR(made.at(0.25)[0], 3 * 0.0625 - 2 * 0.015625, 1e-12);
+  EXPECT_NEAR(made.at(1.5)[0], 1, 1e-12);
+  EXPECT_NEAR(made.at(3)[1], 0.25, 1e-12);
+  EXPECT_EQ(made.at(9)[0], 0);
+  EXPECT_EQ(made.at(-1)[0], 0);
+}
+
 TEST(Expression, BadOnesAreRefusedByNameAndValue) {
   EXPECT_NE(refusal("smirk").find("smirk"), std::string::npos);
   EXPECT_NE(refusal("smirk").find("open-mouth-smile"), std::string::npos);
   EXPECT_NE(refusal("smile:1.5").find("0 to 1, not 1.5"), std::string::npos);
   EXPECT_NE(refusal("smile:nan"), "none");
   EXPECT_NE(refusal("smile:1:up").find("left|right"), std::string::npos);
+  EXPECT_NE(refusal("smile+AU99").find("AU99"), std::string::npos);
+  EXPECT_NE(refusal("smile+"), "none");
+  EXPECT_NE(refusal(""), "none");
   EXPECT_THROW(check_expression("no-such-file.csv"), InputError);
 }
 

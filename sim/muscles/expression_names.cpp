@@ -1,0 +1,81 @@
+#include "sim/muscles/expression_names.h"
+
+#include <algorithm>
+
+#include "engine/core/text_table.h"
+
+namespace condyle {
+
+const std::vector<NamedExpression>& named_expressions() {
+  static const std::vector<NamedExpression> all = {
+      {"smile",
+       "",
+       {{"zygomaticus_major", 1},
+        {"zygomaticus_minor", 0.5},
+        {"levator_labii_superioris", 0.3},
+        {"risorius", 0.3}}},
+      {"open-mouth-smile",
+       "",
+       {{"zygomaticus_major", 1},
+        {"zygomaticus_minor", 0.5},
+        {"levator_labii_superioris", 0.5},
+        {"risorius", 0.3},
+        {"depressor_labii_inferioris", 0.4}}},
+      {"sad", "", {{"depressor_anguli_oris", 0.8}, {"mentalis", 0.3}}},
+      {"disgust", "", {{"levator_labii_alaeque_nasi", 0.8}, {"levator_labii_superioris", 0.6}}},
+      {"AU9", "nose wrinkler", {{"levator_labii_alaeque_nasi", 1}}},
+      {"AU10", "upper lip raiser", {{"levator_labii_superioris", 1}}},
+      {"AU11", "nasolabial deepener", {{"zygomaticus_minor", 1}}},
+      {"AU12", "lip corner puller", {{"zygomaticus_major", 1}}},
+      {"AU13", "sharp lip puller", {{"levator_anguli_oris", 1}}},
+      {"AU15", "lip corner depressor", {{"depressor_anguli_oris", 1}}},
+      {"AU16", "lower lip depressor", {{"depressor_labii_inferioris", 1}}},
+      {"AU17", "chin raiser", {{"mentalis", 1}}},
+      {"AU20", "lip stretcher", {{"risorius", 1}}},
+      {"AU23", "lip tightener", {{"orbicularis_oris_marginal", 1}}},
+  };
+  return all;
+}
+
+const NamedExpression* find_expression(std::string_view name) {
+  const std::string wanted = lower_case(name);
+  for (const NamedExpression& each : named_expressions())
+    if (lower_case(each.name) == wanted) return &each;
+  return nullptr;
+}
+
+std::vector<std::string> builtin_expressions() {
+  std::vector<std::string> names;
+  for (const NamedExpression& each : named_expressions())
+    if (!each.action_unit()) names.push_back(each.name);
+  return names;
+}
+
+std::string list_expressions() {
+  std::string names;
+  for (const NamedExpression& each : named_expressions())
+    names += (names.empty() ? "" : ", ") + each.name;
+  return names;
+}
+
+std::vector<double> excitation_of(std::span<const ExpressionLevel> levels,
+                                  std::span<const FaceMuscle> muscles) {
+  std::vector<double> values(muscles.size(), 0.0);
+  for (const ExpressionLevel& level : levels) {
+    const NamedExpression* expression = find_expression(level.name);
+    if (!expression) continue;
+    for (const auto& [kind, value] : expression->kinds)
+      for (std::size_t m = 0; m < muscles.size(); ++m) {
+        if (muscles[m].kind != kind) continue;
+        const double strength = muscles[m].name.starts_with("left_") ? level.left
+                                : muscles[m].name.starts_with("right_")
+                                    ? level.right
+                                    : std::max(level.left, level.right);
+        values[m] += value * strength;
+      }
+  }
+  for (double& value : values) value = std::clamp(value, 0.0, 1.0);
+  return values;
+}
+
+}  // namespace condyle

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sim/case/face_muscle.h"
+#include "sim/frame/expression_level.h"
+
+namespace condyle {
+
+/// Excitation of a kind of muscle of the face, 0 to 1.
+struct KindExcitation {
+  std::string kind;
+  double value = 0;
+};
+
+/// A built-in expression, or an action unit of the Facial Action Coding System.
+struct NamedExpression {
+  std::string name;    // "smile", "AU12"
+  std::string action;  // of an action unit: "lip corner puller"; empty: an expression
+  std::vector<KindExcitation> kinds;  // at full strength, on both sides
+
+  bool action_unit() const { return !action.empty(); }
+};
+
+/// Expressions first, then action units by number: those whose muscles exist and move the face as
+/// described.
+const std::vector<NamedExpression>& named_expressions();
+
+/// Null: there is none. Case does not count.
+const NamedExpression* find_expression(std::string_view name);
+
+/// Names of the built-in expressions, without action units.
+std::vector<std::string> builtin_expressions();
+/// All names, as "smile, sad, AU9": for messages.
+std::string list_expressions();
+
+/// One value from 0 to 1 for each muscle: the sum of the levels, at most 1. Muscles in the middle
+/// are excited as the stronger side. Unknown names excite nothing.
+std::vector<double> excitation_of(std::span<const ExpressionLevel> levels,
+                                  std::span<const FaceMuscle> muscles);
+
+}  // namespace condyle
