@@ -8,6 +8,7 @@
 
 #include "engine/core/error.h"
 #include "sim/motion/closed_position.h"
+#include "sim/muscles/default_face_muscles.h"
 #include "sim/muscles/default_muscles.h"
 #include "sim/operated/graft_path.h"
 #include "sim/plan/plan_file.h"
@@ -104,6 +105,13 @@ Scene scene_with_contact(const OperatedPatient& after, const SimulatorSettings& 
   return {std::move(patient), std::move(contacts), nullptr, after.plan};
 }
 
+PredictionSettings prediction_settings(const Case& uncut, const SimulatorSettings& settings) {
+  PredictionSettings of{
+      .tissue = settings.tissue_model, .threads = settings.threads, .stripping = {}};
+  of.tissue.face_muscles = default_face_muscles(uncut);
+  return of;
+}
+
 Scene scene_with_face(const Scene& bones, const Prediction& prediction,
                       const SimulatorSettings& settings) {
   Scene scene = bones;
@@ -126,9 +134,8 @@ Scene make_operated_scene(Case patient, const Plan& plan, const SimulatorSetting
   if (!patient.find(Role::face) || !(settings.tissue || settings.face))
     return scene_with_contact(operate(patient, plan), settings, nullptr, progress);
   const Case uncut = with_muscles(std::move(patient));
-  const Prediction prediction = predict(
-      uncut, plan, {.tissue = settings.tissue_model, .threads = settings.threads, .stripping = {}},
-      progress);
+  const Prediction prediction =
+      predict(uncut, plan, prediction_settings(uncut, settings), progress);
   const Scene bones =
       scene_with_contact(operate(uncut, plan, prediction.operated), settings, nullptr, progress);
   if (settings.tissue) report(progress, "solving the tissue along the opening", 0.9);

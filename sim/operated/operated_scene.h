@@ -28,6 +28,9 @@ OperatedPatient operate(const Case& patient, const Plan& plan);
 /// The same of a plan replayed already. `uncut`: with_muscles().
 OperatedPatient operate(const Case& uncut, const Plan& plan, Operated operated);
 
+/// Settings of a prediction whose tissue has the patient's muscles of the face.
+PredictionSettings prediction_settings(const Case& uncut, const SimulatorSettings& settings);
+
 /// The stages of make_operated_scene(), for a front end that shows each. First the bones at their
 /// planned positions, passing through each other.
 Scene scene_without_contact(const OperatedPatient& after);

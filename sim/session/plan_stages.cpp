@@ -56,11 +56,7 @@ PlanStages::Made PlanStages::with_face(const SessionPatient& bones, const Plan& 
   try {
     const std::lock_guard lock(predicting_);
     if (!predictor_)
-      predictor_.emplace(
-          prepared_,
-          PredictionSettings{
-              .tissue = settings_.tissue_model, .threads = settings_.threads, .stripping = {}},
-          whole_);
+      predictor_.emplace(prepared_, prediction_settings(prepared_, settings_), whole_);
     made.scene = scene_with_face(bones.scene, predictor_->predict(plan, progress), settings_);
   } catch (const InputError& error) {
     made.trouble = std::string("The soft tissue is left out. ") + error.what();

@@ -217,6 +217,11 @@ std::vector<MuscleLine> muscle_pull(const TissueMuscles& muscles,
   return pull;
 }
 
+TissueMuscles at_new_rest(TissueMuscles muscles, const Nodes& nodes, std::span<const Pose> X_CB) {
+  for (TissueMuscles::Line& line : muscles.lines) line.rest_mm = line_at(line, X_CB).length(nodes);
+  return muscles;
+}
+
 std::vector<double> muscle_lengths(const TissueMuscles& muscles, const Nodes& nodes,
                                    std::span<const Pose> X_CB) {
   std::vector<double> length(muscles.muscles.size(), 0);

@@ -49,6 +49,9 @@ std::vector<double> anchor_scales(const TissueMuscles& muscles, std::span<const 
 std::vector<MuscleLine> muscle_pull(const TissueMuscles& muscles,
                                     std::span<const double> excitation, std::span<const Pose> X_CB);
 
+/// Muscles that have adapted to another rest: their lengths there are those at rest.
+TissueMuscles at_new_rest(TissueMuscles muscles, const Nodes& nodes, std::span<const Pose> X_CB);
+
 /// Length of each muscle, the mean of its lines, mm.
 std::vector<double> muscle_lengths(const TissueMuscles& muscles, const Nodes& nodes,
                                    std::span<const Pose> X_CB);

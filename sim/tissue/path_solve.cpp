@@ -53,6 +53,7 @@ std::shared_ptr<const TissueModel> with_planned_rest(const TissueModel& model,
   for (const auto& vertex : face) planned->face.push_back(vertex.cast<double>());
   auto rested = std::make_shared<TissueModel>(model);
   rested->planned = std::move(planned);
+  rested->muscles = at_new_rest(std::move(rested->muscles), state.nodes, state.X_CB);
   rested->factors.clear();
   make_opening_path(model.opening.path->condyles, *rested, threads);
   return rested;

@@ -180,6 +180,19 @@ TissueContact contact_on_pieces(const TissueModel& uncut, std::span<const CutBon
   return contact;
 }
 
+/// The origins of muscles of the face go with the pieces on which they lie.
+TissueMuscles muscles_on_pieces(TissueMuscles muscles, std::span<const CutBone> cuts,
+                                std::span<const PieceFractions> fractions) {
+  for (TissueMuscles::Line& line : muscles.lines)
+    for (TissueMuscles::Point& point : line.points)
+      for (std::size_t c = 0; c < cuts.size(); ++c)
+        if (point.bone == cuts[c].whole) {
+          point.bone = fractions[c].owner_at(point.rest);
+          break;
+        }
+  return muscles;
+}
+
 }  // namespace
 
 std::shared_ptr<const TissueModel> carry_to_pieces(const TissueModel& uncut,
@@ -194,6 +207,7 @@ std::shared_ptr<const TissueModel> carry_to_pieces(const TissueModel& uncut,
   model->support = support_on_pieces(uncut, cuts, fractions);
   model->contact = std::make_shared<const TissueContact>(
       contact_on_pieces(uncut, cuts, fractions, jaw, threads));
+  model->muscles = muscles_on_pieces(std::move(model->muscles), cuts, fractions);
   model->opening.body = jaw.lower_arch;
   for (const auto& cut : cuts) {
     auto& along = model->opening.along;

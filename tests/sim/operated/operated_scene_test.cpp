@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "sim/frame/body_poses.h"
+#include "sim/muscles/expression.h"
 #include "sim/prediction/prediction.h"
+#include "sim/tissue/model.h"
 #include "tests/support/builtin.h"
 
 namespace condyle {
@@ -56,6 +58,45 @@ TEST(OperatedScene, TheChinOpensWithTheJawAboutTheSameCondyles) {
       1e-9);
   ASSERT_TRUE(scene.plan);
   EXPECT_EQ(scene.plan->name, "test");
+}
+
+TEST(OperatedScene, TheOperatedFaceSmilesByMusclesOnItsPieces) {
+  const Scene& scene = operated_scene();
+  const TissueModel& tissue = *scene.tissue;
+  const auto chin = scene.patient.bodies.find("chin");
+  const auto& muscles = face_muscles_of(tissue);
+  ASSERT_GT(muscles.size(), 10u);
+  bool chin_carries_mentalis = false;
+  for (const TissueMuscles::Line& line : tissue.muscles.lines)
+    for (const TissueMuscles::Point& point : line.points) {
+      if (!point.bone) continue;
+      EXPECT_LT(index_of(*point.bone), scene.patient.bodies.bodies().size());
+      chin_carries_mentalis |= point.bone == chin;
+    }
+  EXPECT_TRUE(chin_carries_mentalis);
+  const Expression smile = make_expression("smile", muscles);
+  const TissueState rest = rest_tissue(tissue);
+  TissueState state = rest;
+  TissueWarmStart warm;
+  for (int i = 1; i <= 25; ++i)
+    state = solve_tissue(tissue, state, {}, {}, warm, smile.at(0.02 * i));
+  EXPECT_EQ(state.inverted_prisms, 0);
+  for (const char* corner : {"left_cheilion", "right_cheilion"}) {
+    const Eigen::Vector3d at = *scene.patient.landmarks.find(corner);
+    const double moved =
+        (carried_point(tissue, state, at) - carried_point(tissue, rest, at)).norm();
+    EXPECT_GT(moved, 8) << corner;
+    EXPECT_LT(moved, 15) << corner;
+  }
+  // At the planned rest no muscle pulls: hardly excited ones change nothing.
+  const std::vector<double> faint(muscles.size(), 1e-6);
+  TissueWarmStart other, without;
+  const TissueState excited = solve_tissue(tissue, rest, {}, {}, other, faint),
+                    relaxed = solve_tissue(tissue, rest, {}, {}, without);
+  double most = 0;
+  for (std::size_t n = 0; n < excited.nodes.size(); ++n)
+    most = std::max(most, (excited.nodes[n] - relaxed.nodes[n]).norm());
+  EXPECT_LT(most, 0.02);
 }
 
 }  // namespace condyle
