@@ -49,7 +49,8 @@ void LiveSession::request(const ViewState& view, const std::optional<Pose>& X_CM
   simulation_->request({.time_s = view.time_s,
                         .opening_mm = view.opening_mm,
                         .obey_contact = view.obey_contact,
-                        .face = view.simulates_tissue(state_.scene)});
+                        .face = view.simulates_tissue(state_.scene),
+                        .expression = view.expression});
   Hands hands = view.hands;
   if (X_CM_released) hands.hold_jaw(*X_CM_released);
   if (hands == applied_) return;

@@ -9,6 +9,7 @@
 #include "render/recording/overlay_drawing.h"
 #include "sim/frame/body_poses.h"
 #include "sim/frame/part_names.h"
+#include "sim/muscles/expression_names.h"
 #include "sim/muscles/muscle_names.h"
 #include "sim/plan/clinical_frame.h"
 #include "sim/tissue/model.h"
@@ -99,6 +100,16 @@ std::vector<TreeItem> muscle_items(const SessionPatient& patient) {
   std::vector<TreeItem> items;
   for (const Muscle& muscle : patient.muscles)
     items.push_back({muscle.name, sided(muscle), short_name(muscle)});
+  return items;
+}
+
+std::vector<TreeItem> expression_items(const SessionPatient& patient) {
+  const TissueModel* model = patient.scene.tissue.get();
+  if (!model || face_muscles_of(*model).empty()) return {};
+  std::vector<TreeItem> items;
+  for (const NamedExpression& each : named_expressions())
+    items.push_back({each.name, each.action_unit() ? each.name + ", " + each.action
+                                                   : readable_name(each.name)});
   return items;
 }
 

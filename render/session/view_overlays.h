@@ -37,6 +37,9 @@ struct OverlayInputs {
 /// missing.
 std::optional<Eigen::Hyperplane<double, 3>> midsagittal_plane(const SessionPatient& patient);
 
+/// The expressions and action units for a patient's face; none without its muscles.
+std::vector<TreeItem> expression_items(const SessionPatient& patient);
+
 /// Entries of the tree for a patient's muscles, and for the layers of the soft tissue.
 std::vector<TreeItem> muscle_items(const SessionPatient& patient);
 std::vector<TreeItem> layer_items(const SessionPatient& patient);

@@ -15,15 +15,24 @@
 #include "render/recording/frame_renderer.h"
 #include "render/recording/recording_identity.h"
 #include "render/session/view_overlays.h"
+#include "sim/muscles/expression_names.h"
 #include "sim/session/background_work.h"
 
 namespace condyle {
 namespace fs = std::filesystem;
 namespace {
 
-/// The motion as the window shows it: constant where a hand or the slider holds the jaw.
+/// The motion as the window shows it: constant where a hand or the slider holds the jaw,
+/// with the expression of the sliders.
 Motion seen_motion(const ViewRecording& subject) {
   Motion motion = subject.motion->motion;
+  const auto& tissue = subject.patient->scene.tissue;
+  if (tissue && !subject.view.expression.empty())
+    motion.expression = [moved = motion.expression,
+                         by_sliders = excitation_of(subject.view.expression,
+                                                    face_muscles_of(*tissue))](double time_s) {
+      return added_excitations(moved ? moved(time_s) : std::vector<double>{}, by_sliders);
+    };
   if (!subject.held_jaw) return motion;
   motion.target = [pose = *subject.held_jaw](double) { return pose; };
   motion.muscles = {};

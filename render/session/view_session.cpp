@@ -113,6 +113,7 @@ void ViewSession::show_renewed_patient(const std::vector<Landmark>& landmarks) {
   shown.parts = scene.parts;
   shown.distance_remarks = std::move(scene.distance_remarks);
   shown.bodies = std::move(scene.bodies);
+  shown.expressions = std::move(scene.expressions);
   shown.muscles = std::move(scene.muscles);
   shown.layers = std::move(scene.layers);
   shown.landmarks_in_use = landmarks;
@@ -264,6 +265,7 @@ WindowScene ViewSession::scene_of_patient() const {
   scene.landmarks = scene.landmarks_in_use = landmarks_of(*state_.patient);
   scene.motions = motion_names(state_.patient->scene);
   scene.motion = asked_;
+  scene.expressions = expression_items(*state_.patient);
   scene.muscles = muscle_items(*state_.patient);
   scene.layers = layer_items(*state_.patient);
   scene.plan = plan_.view();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <utility>
 
 #include "engine/core/files.h"
@@ -17,6 +18,11 @@ nlohmann::json edits_of(const ViewState& view) {
     nlohmann::json list = nlohmann::json::array();
     for (const PartView& one : views) list.push_back(one.shown ? one.opacity : 0);
     return list;
+  };
+  const auto levels = [](const std::vector<ExpressionLevel>& expression) {
+    nlohmann::json json = nlohmann::json::object();
+    for (const ExpressionLevel& one : expression) json[one.name] = {one.left, one.right};
+    return json;
   };
   // Complete: a new field of Look does not compile until it is added here.
   const auto& [clip, clip_skin, clip_from, clip_fraction, cut_away, cut_at, cut_radius_mm, ghost,
@@ -53,6 +59,7 @@ nlohmann::json edits_of(const ViewState& view) {
           {"muscles", parts(view.muscles)},
           {"layers", parts(view.layers)},
           {"motion", view.motion.spec},
+          {"expression", levels(view.expression)},
           {"parameters", view.motion.parameters},
           {"excitations", view.motion.excitations}};
 }
@@ -151,6 +158,8 @@ void ViewStateFile::update(const Window& window, const FrameState* frame,
     json["frame"] = {{"time_s", frame->time_s},
                      {"mandible_mm", list(frame->poses[view.hands.jaw].t)},
                      {"stopped", frame->stopped},
+                     {"excitation", std::accumulate(frame->tissue.excitation.begin(),
+                                                    frame->tissue.excitation.end(), 0.0)},
                      {"opening_mm", frame->measures.opening_mm},
                      {"penetration_mm", frame->contacts.max_penetration_mm()}};
   }

@@ -78,4 +78,10 @@ std::vector<double> excitation_of(std::span<const ExpressionLevel> levels,
   return values;
 }
 
+std::vector<double> added_excitations(std::vector<double> a, std::span<const double> b) {
+  a.resize(std::max(a.size(), b.size()));
+  for (std::size_t m = 0; m < b.size(); ++m) a[m] = std::min(1.0, a[m] + b[m]);
+  return a;
+}
+
 }  // namespace condyle

@@ -42,4 +42,7 @@ std::string list_expressions();
 std::vector<double> excitation_of(std::span<const ExpressionLevel> levels,
                                   std::span<const FaceMuscle> muscles);
 
+/// The sums, at most 1; the shorter list counts as 0 beyond its end.
+std::vector<double> added_excitations(std::vector<double> a, std::span<const double> b);
+
 }  // namespace condyle

@@ -7,6 +7,7 @@
 #include <thread>
 #include <vector>
 
+#include "sim/frame/expression_level.h"
 #include "sim/simulator/simulator.h"
 
 namespace condyle {
@@ -20,6 +21,7 @@ struct LiveRequest {
   std::optional<double> opening_mm = std::nullopt;  // instead of the pose of the motion
   bool obey_contact = true;
   bool face = true;  // the face is visible: its tissue is stepped and its surface computed
+  std::vector<ExpressionLevel> expression = {};  // added to that of the motion
   bool operator==(const LiveRequest&) const = default;
 };
 

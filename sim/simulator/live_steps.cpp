@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "sim/muscles/expression_names.h"
+
 namespace condyle {
 namespace {
 
@@ -47,9 +49,20 @@ StepInput LiveSteps::input(const LiveTarget& target, double time_s, bool shown) 
                       motion_.pieces && !opening_mm ? motion_.pieces(time_s) : X_PB_moved_),
                   .obey_contact = target.request.obey_contact};
   input.bound_far = !shown;
+  input.excitation = excitation(target.request, time_s);
   for (std::size_t b = 0; b < X_PB_moved_.size(); ++b)
     if (target.X_PB_held[b]) input.X_PB_target[b] = *target.X_PB_held[b];
   return input;
+}
+
+/// Of the muscles of the face: those of the motion and of the request, added up.
+std::vector<double> LiveSteps::excitation(const LiveRequest& request, double time_s) const {
+  if (!scene_.tissue) return {};
+  std::vector<double> requested;
+  if (!request.expression.empty())
+    requested = excitation_of(request.expression, face_muscles_of(*scene_.tissue));
+  if (!motion_.expression) return requested;
+  return added_excitations(motion_.expression(time_s), requested);
 }
 
 void LiveSteps::begin_at(const BodyPoses& poses) {

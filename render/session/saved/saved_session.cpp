@@ -201,6 +201,12 @@ ViewState fitted_view(const SavedSession& session, const WindowScene& scene,
   if (lost > 0)
     left_out.push_back(plural(lost, "entry of the tree is", "entries of the tree are") +
                        " not there");
+  std::erase_if(view.expression, [&](const ExpressionLevel& level) {
+    const auto names = item_names(scene.expressions);
+    const bool unknown = std::find(names.begin(), names.end(), level.name) == names.end();
+    if (unknown) left_out.push_back("the expression " + level.name);
+    return unknown;
+  });
   fit_points(session, scene, view, left_out);
   fit_landmarks(session, scene, view);
   fit_chosen_parts(session, scene, view, left_out);

@@ -14,7 +14,7 @@ namespace condyle::session_fields {
 
 inline constexpr std::array tools = {"look", "move", "measure", "landmarks", "cut"};
 inline constexpr std::array left_tabs = {"parts", "look"};
-inline constexpr std::array side_tabs = {"readings", "motion", "plan", "record"};
+inline constexpr std::array side_tabs = {"readings", "motion", "plan", "record", "face"};
 inline constexpr std::array cut_places = {"left_joint", "right_joint", "mouth"};
 
 /// Converts to a value of any type, to count the members of an aggregate.
@@ -68,8 +68,8 @@ template <class Visit, class AnyEdits>
 void edit_fields(Visit& visit, AnyEdits& edits) {
   // Complete: a new field does not compile until it is added here.
   auto& [obey_contact, mark_contacts, shadows, distances, measured_points, opening_mm, hands,
-         landmarks, drawn_cut, motion, look, skin_opacity, skin_to_return, parts, muscles, layers] =
-      edits;
+         landmarks, drawn_cut, motion, expression, look, skin_opacity, skin_to_return, parts,
+         muscles, layers] = edits;
   visit.parts("parts", parts, &ViewNames::parts);  // first: points and landmarks name them
   visit.parts("muscles", muscles, &ViewNames::muscles);
   visit.parts("layers", layers, &ViewNames::layers);
@@ -83,6 +83,7 @@ void edit_fields(Visit& visit, AnyEdits& edits) {
   visit.landmarks("landmarks", landmarks);
   visit.cut("drawn_cut", drawn_cut);
   visit.motion("motion", motion);
+  visit.expression("expression", expression);
   visit.group("look", [&edits](auto& inside) { look_fields(inside, edits.look); });
   visit.number("skin_opacity", skin_opacity, 0, 1);
   visit.number("skin_to_return", skin_to_return, 0, 1);

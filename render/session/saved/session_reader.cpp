@@ -216,4 +216,18 @@ void Reader::motion(const char* name, MotionChoice& motion) {
     motion.excitations = numbers_in(*excitations);
 }
 
+void Reader::expression(const char* name, std::vector<ExpressionLevel>& levels) {
+  const auto list = find(name);
+  if (!list) return;
+  limit_items(*list);
+  levels.clear();
+  for (std::size_t i = 0; i < list->size(); ++i) {
+    const JsonItem item = list->at(i);
+    item.only_keys({"name", "left", "right"});
+    levels.push_back({.name = item.at("name").text(),
+                      .left = item.at("left").number(0, 1),
+                      .right = item.at("right").number(0, 1)});
+  }
+}
+
 }  // namespace condyle::session_fields

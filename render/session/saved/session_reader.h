@@ -71,6 +71,7 @@ class Reader {
     if (const auto item = find(name)) part = part_in(*item);
   }
   void motion(const char* name, MotionChoice& motion);
+  void expression(const char* name, std::vector<ExpressionLevel>& levels);
 
  private:
   std::optional<JsonItem> find(const char* name);

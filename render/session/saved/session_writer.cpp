@@ -97,4 +97,10 @@ void Writer::motion(const char* name, const MotionChoice& motion) {
   item["excitations"] = excitations;
 }
 
+void Writer::expression(const char* name, const std::vector<ExpressionLevel>& levels) {
+  OrderedJson& list = object_[name] = OrderedJson::array();
+  for (const auto& [expression, left, right] : levels)
+    list.push_back({{"name", expression}, {"left", left}, {"right", right}});
+}
+
 }  // namespace condyle::session_fields

@@ -61,6 +61,7 @@ class Writer {
     if (part) object_[name] = part_name(*part);
   }
   void motion(const char* name, const MotionChoice& motion);
+  void expression(const char* name, const std::vector<ExpressionLevel>& levels);
 
  private:
   std::string part_name(std::size_t part) const;

@@ -23,6 +23,7 @@ struct NumberEntry {
 struct PanelFormState {
   std::string motion_words;
   std::map<std::string, double> parameters, excitations;  // being dragged
+  bool both_sides = true;                                 // of an expression at once
   struct RecordFields {
     std::string folder;
     bool running = false;  // whether a recording ran in the previous pass

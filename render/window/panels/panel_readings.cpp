@@ -50,14 +50,15 @@ std::string part_name(const WindowScene& scene, int index) {
 }  // namespace
 
 void Panels::Drawing::side_tabs() {
-  constexpr std::array<std::pair<SideTab, const char*>, 4> tabs = {{{SideTab::readings, "Readings"},
+  constexpr std::array<std::pair<SideTab, const char*>, 5> tabs = {{{SideTab::readings, "Readings"},
                                                                     {SideTab::motion, "Motion"},
+                                                                    {SideTab::face, "Face"},
                                                                     {SideTab::plan, "Plan"},
                                                                     {SideTab::record, "Record"}}};
   const float gap = pen.px(4);
   float words = 0;
   for (const auto& [tab, label] : tabs) words += text_width(panels.theme_.regular, label);
-  const float margin = std::floor((ImGui::GetContentRegionAvail().x - 3 * gap - words) / 4);
+  const float margin = std::floor((ImGui::GetContentRegionAvail().x - 4 * gap - words) / 5);
   for (const auto& [tab, label] : tabs) {
     if (tab != SideTab::readings) ImGui::SameLine(0, gap);
     if (word_button(pen, (std::string("tab:") + label).c_str(), label,
@@ -72,6 +73,8 @@ void Panels::Drawing::side() {
   side_tabs();
   if (view.tab == SideTab::motion)
     motion();
+  else if (view.tab == SideTab::face)
+    face();
   else if (view.tab == SideTab::plan)
     plan();
   else if (view.tab == SideTab::record)

@@ -64,6 +64,7 @@ const char* edit_name(const Edits& a, const Edits& b) {
   if (a.measured != b.measured) return "a measured point";
   if (a.landmarks != b.landmarks) return "a landmark";
   if (!(a.motion == b.motion)) return "the motion";
+  if (a.expression != b.expression) return "the expression";
   if (a.parts != b.parts || a.muscles != b.muscles || a.layers != b.layers ||
       a.skin_opacity != b.skin_opacity)
     return "what is shown";

@@ -84,6 +84,9 @@ struct Panels::Drawing {
   void motion_choice();
   void motion_muscles();
   void motion_parameters();
+  // panel_face.cpp
+  void face();
+  void expression_row(const TreeItem& item);
   // panel_plan.cpp
   void plan();
   void plan_steps();

@@ -17,7 +17,7 @@ constexpr std::chrono::milliseconds calm{500};
 
 constexpr std::array left_tabs = {"parts", "look"};
 constexpr std::array edges = {"msaa", "fxaa", "none"};
-constexpr std::array side_tabs = {"readings", "motion", "plan", "record"};
+constexpr std::array side_tabs = {"readings", "motion", "plan", "record", "face"};
 
 json json_of(const RecordChoice& r) {
   return {{"width", r.width},

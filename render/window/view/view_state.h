@@ -13,6 +13,7 @@
 #include "render/window/view/movable.h"
 #include "render/window/view/ui_commands.h"
 #include "sim/frame/before_operation.h"
+#include "sim/frame/expression_level.h"
 #include "sim/frame/frame_state.h"
 #include "sim/frame/part.h"
 
@@ -45,8 +46,9 @@ struct WindowScene {
   std::vector<ExcitationSetting> excitations = {};  // of a motion that muscles drive
   std::vector<Landmark> landmarks = {};             // of the loaded or saved case
   std::vector<Landmark> landmarks_in_use = {};      // those of the simulation
-  std::vector<TreeItem> muscles = {};  // lines of action that can be shown, in the case's order
-  std::vector<TreeItem> layers = {};   // sheets of the soft tissue, from the skin inward
+  std::vector<TreeItem> expressions = {};  // of the face, and action units; none: no muscles
+  std::vector<TreeItem> muscles = {};      // lines of action that can be shown, in the case's order
+  std::vector<TreeItem> layers = {};       // sheets of the soft tissue, from the skin inward
   std::vector<std::filesystem::path> recent = {};      // opened before, the last one first
   PlanView plan = {};                                  // of the operation
   std::shared_ptr<const BeforeOperation> before = {};  // none where the plan changes nothing
@@ -112,7 +114,7 @@ struct Look {
 enum class LeftTab { parts, look };
 
 /// Content of the right column.
-enum class SideTab { readings, motion, plan, record };
+enum class SideTab { readings, motion, plan, record, face };
 
 /// Which panels are in use.
 struct PanelChoice {
@@ -136,6 +138,7 @@ struct Edits {
   std::vector<Landmark> landmarks = {};    // as edited; initially the scene's
   DrawnCut drawn_cut = {};                 // by the tool for cuts
   MotionChoice motion = {};                // requested; initially the scene's
+  std::vector<ExpressionLevel> expression = {};  // of the face, added to the motion's
   Look look = {};
   double skin_opacity = 1;                    // of parts with the role `face`, on top of their own
   std::optional<double> skin_to_return = {};  // its opacity before distances hid it

@@ -37,6 +37,7 @@ struct SavedScene : testing::Test {
       .bodies = {{.part = 1, .body = mandible_body},
                  {.part = 0, .body = cranium_body, .follows_motion = false},
                  {.part = 2, .body = BodyId{2}, .parent = mandible_body, .follows_motion = false}},
+      .expressions = {{"smile", "Smile"}, {"AU16", "AU16"}},
       .muscles = {{"left_masseter", "Masseter"}, {"right_masseter", "Masseter"}},
       .layers = {{"skin", "Skin"}}};
   test::Folder folder;
@@ -64,8 +65,8 @@ struct SavedScene : testing::Test {
     wipe_at = 0.1;
     mirrored = "mandible";
     auto& [obey_contact, mark_contacts, shadows, distances, measured_points, opening_mm, hands,
-           landmarks, drawn_cut, motion, look, skin_opacity, skin_to_return, shown_parts, muscles,
-           layers] = static_cast<Edits&>(view);
+           landmarks, drawn_cut, motion, expression, look, skin_opacity, skin_to_return,
+           shown_parts, muscles, layers] = static_cast<Edits&>(view);
     for (bool* flag : {&obey_contact, &mark_contacts, &shadows, &distances}) *flag = !*flag;
     measured_points = {{1, {0, 2, 1}, {0.2, 0.3, 0.5}}, {2, {4, 5, 6}, {1, 0, 0}}};
     opening_mm = 1.0 / 7;
@@ -79,6 +80,7 @@ struct SavedScene : testing::Test {
                  .depth_mm = 7.5,
                  .kerf_mm = 0.6};
     motion = {"chewing", {{"bolus_mm", 8.25}}, {{"masseter", 0.4}}};
+    expression = {{"smile", 0.75, 0.5}, {"AU16", 0, 1.0 / 3}};
     skin_opacity = 0.35;
     skin_to_return = 0.9;
     shown_parts = {{false, 1}, {true, 0.25}, {true, 0.75}, {false, 0.5}};
@@ -261,6 +263,8 @@ TEST_F(SavedScene, AnotherSceneKeepsWhatFitsAndSaysWhatDoesNot) {
   const std::string words = testing::PrintToString(left_out);
   EXPECT_NE(words.find("2 measured points lie on a surface that has changed"), std::string::npos)
       << words;
+  EXPECT_TRUE(view.expression.empty());
+  EXPECT_NE(words.find("the expression AU16"), std::string::npos) << words;
   EXPECT_NE(words.find("chin was moved by hand"), std::string::npos) << words;
 }
 
@@ -275,6 +279,8 @@ TEST_F(SavedScene, WhatIsWrongIsRefusedWithFileItemAndValue) {
       {[](Json& j) { j["view"]["look"]["wipe_at"] = 1.5; }, "view.look.wipe_at: is 1.5"},
       {[](Json& j) { j["view"]["look"]["clip_from"] = "X"; }, "view.look.clip_from: is \"X\""},
       {[](Json& j) { j["view"]["look"]["ghost"] = 1; }, "view.look.ghost: is 1"},
+      {[](Json& j) { j["view"]["expression"][0]["left"] = 1.5; },
+       "view.expression[0].left: is 1.5"},
       {[](Json& j) { j["view"]["tool"] = "saw"; },
        "view.tool: is \"saw\"; it must be one of: look"},
       {[](Json& j) { j["view"]["speed"] = 20; }, "view.speed: is 20"},

@@ -445,6 +445,39 @@ TEST_P(Instrument, SlidersChangeTheMotionOnMouseRelease) {
   EXPECT_EQ(stage.view.motion.spec, "posselt");
 }
 
+TEST_P(Instrument, SlidersMoveTheFaceOnBothSidesOrOne) {
+  stage.click("tab:Face");
+  stage.rest();
+  EXPECT_FALSE(stage.has("both-sides")) << "no muscles";
+  stage.scene.expressions = {{"smile", "Smile"}, {"AU16", "AU16, lower lip depressor"}};
+  stage.rest();
+  expect_tidy();
+  keep("face");
+  const auto& levels = stage.view.expression;
+  stage.slide("expression:smile:right", 0.02, 0.8);
+  ASSERT_EQ(levels.size(), 1u);
+  EXPECT_NEAR(levels[0].right, 0.8, 0.05);
+  EXPECT_EQ(levels[0].left, levels[0].right);
+  EXPECT_EQ(stage.item("number:smile").words,
+            fmt::format("{0} %  {0} %", std::lround(100 * levels[0].left)));
+  stage.click("both-sides");
+  stage.enter("expression:smile:left", "25", true);
+  EXPECT_DOUBLE_EQ(levels[0].left, 0.25);
+  EXPECT_NEAR(levels[0].right, 0.8, 0.05);
+  stage.slide("expression:AU16:left", 0.02, 0.5);
+  ASSERT_EQ(levels.size(), 2u);
+  EXPECT_EQ(levels[1].name, "AU16");
+  EXPECT_EQ(levels[1].right, 0);
+  EXPECT_LT(stage.item("expression:smile:right").rect.x, stage.item("expression:smile:left").rect.x)
+      << "as in a view from the front";
+  stage.enter("expression:AU16:left", "0", true);
+  EXPECT_EQ(levels.size(), 1u) << "nothing is kept of what is not excited";
+  stage.click("expression-relax");
+  EXPECT_TRUE(levels.empty());
+  stage.panels->run(Command::undo, stage.scene, stage.view);
+  EXPECT_EQ(levels.size(), 1u);
+}
+
 TEST_P(Instrument, TheMotionIsNamedAsInItsList) {
   for (const auto& [name, words] : {std::pair{"chewing-left", "Chewing left"},
                                     {"chewing left", "Chewing left"},

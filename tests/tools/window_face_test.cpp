@@ -1,0 +1,60 @@
+// The face's expression by the sliders of the window, and by a motion in words.
+#include "window_session.h"
+
+namespace condyle::test {
+namespace {
+
+TEST_F(WindowSession, SlidersMoveTheLiveFaceAndAreSavedWithTheSession) {
+  start({"--motion", "smile 0.5 over 0.3; hold 1"});
+  ASSERT_TRUE(wait_until(idle, 120));
+  const auto excitation = [](const Json& s) { return double(s["frame"]["excitation"]); };
+  EXPECT_TRUE(wait_until([&](const Json& s) { return excitation(s) > 0.5; }))
+      << "the motion's own expression";
+  EXPECT_TRUE(press("space"));
+  ASSERT_TRUE(wait_until([](const Json& s) { return s["playing"] == false; }));
+  click("to-start");
+  ASSERT_TRUE(wait_until([&](const Json& s) { return excitation(s) == 0; })) << "rest";
+  click("tab:Face");
+  ASSERT_TRUE(wait_for_item("expression:smile:right"));
+  see("at-rest");
+  const auto slide = [&](const std::string& item, double from, double to) {
+    const auto r = rect(item);
+    drag(r[0] + from * r[2], r[1] + r[3] / 2, r[0] + to * r[2], r[1] + r[3] / 2);
+  };
+  slide("expression:smile:right", 0.03, 0.97);
+  ASSERT_TRUE(wait_until([&](const Json& s) { return excitation(s) > 3; }));
+  EXPECT_EQ(double(state()["edits"]["expression"]["smile"][0]),
+            double(state()["edits"]["expression"]["smile"][1]));
+  EXPECT_GT(see("smile"), 0.005);
+  click("both-sides");
+  slide("expression:smile:left", 0.97, 0.03);
+  EXPECT_TRUE(wait_until([](const Json& s) {
+    const Json& smile = s["edits"]["expression"]["smile"];
+    return double(smile[0]) < 0.05 && double(smile[1]) > 0.9;
+  })) << state()["edits"]["expression"].dump();
+  EXPECT_GT(see("right-side-only"), 0.003);
+
+  const fs::path session = folder_ / "smile.condyle-session";
+  EXPECT_TRUE(press("ctrl+s"));
+  ASSERT_TRUE(wait_for_item("session-path"));
+  write_into("session-path", session);
+  ASSERT_TRUE(wait_until([&](const Json& s) { return s["session"] == session.string(); }));
+  const Json kept = state()["edits"]["expression"];
+  click("expression-relax");
+  EXPECT_TRUE(wait_until([&](const Json& s) { return excitation(s) == 0; }));
+  EXPECT_TRUE(press("ctrl+z"));
+  EXPECT_TRUE(wait_until([&](const Json& s) { return s["edits"]["expression"] == kept; }));
+  EXPECT_TRUE(press("ctrl+q"));
+  EXPECT_EQ(wait_for_end(), 0);
+
+  start({session});
+  ASSERT_TRUE(wait_until(idle, 120));
+  EXPECT_TRUE(wait_until([&](const Json& s) {
+    return s["edits"]["expression"] == kept && excitation(s) > 1;
+  })) << state()["edits"]["expression"].dump();
+  EXPECT_TRUE(press("ctrl+q"));
+  EXPECT_EQ(wait_for_end(), 0);
+}
+
+}  // namespace
+}  // namespace condyle::test
