@@ -8,6 +8,7 @@
 #include "sim/muscles/default_face_muscles.h"
 #include "sim/muscles/default_muscles.h"
 #include "sim/muscles/expression.h"
+#include "sim/muscles/face_weakness.h"
 #include "sim/operated/graft_path.h"
 #include "sim/operated/operated_scene.h"
 #include "sim/plan/plan_file.h"
@@ -113,6 +114,12 @@ void add_expression(CLI::App& command, MotionOptions& motion) {
               "(smile:1:left), several joined by +; or excitations of its muscles over time "
               "(*.csv): condyle help muscles")
       ->type_name("NAME[:STRENGTH[:SIDE]]+...|FILE");
+  command
+      .add_option("--weakness", motion.weakness,
+                  "Remaining strength of the muscles of the face, 0 paralysed to 1 healthy, of a "
+                  "side or a muscle: right:0.2, left_zygomaticus_major:0; may be given several "
+                  "times")
+      ->type_name("SIDE|MUSCLE:STRENGTH");
 }
 
 void add_plan_file(CLI::App& command, std::filesystem::path& plan) {
@@ -172,6 +179,7 @@ SimulatorSettings simulator_settings(const MotionOptions& options, const CommonO
 }
 
 void check_motion(const MotionOptions& options) {
+  check_weakness(options.weakness);
   if (!options.expression.empty()) {
     check_expression(options.expression);
     if (!options.tissue.simulated)
@@ -195,7 +203,10 @@ void check_motion(const MotionOptions& options, const Case& patient) {
                      " is missing");
 }
 
-Motion motion_of(const MotionOptions& options, const Scene& scene, int threads) {
+namespace {
+
+/// The motion with the jaw's movements and the expressions, of healthy muscles.
+Motion healthy_motion_of(const MotionOptions& options, const Scene& scene, int threads) {
   Motion motion = jaw_motion_of(options, scene, threads);
   if (motion.expression && !scene.tissue) {
     motion.expression = {};
@@ -212,6 +223,25 @@ Motion motion_of(const MotionOptions& options, const Scene& scene, int threads) 
   const Expression expression = make_expression(options.expression, face_muscles_of(*scene.tissue));
   if (motion.duration_s <= 0) motion.duration_s = std::max(expression.duration_s, 0.2);
   motion.expression = expression.at;
+  return motion;
+}
+
+}  // namespace
+
+Motion motion_of(const MotionOptions& options, const Scene& scene, int threads) {
+  Motion motion = healthy_motion_of(options, scene, threads);
+  if (options.weakness.empty() || !scene.tissue) return motion;
+  const std::vector<double> strengths =
+      muscle_strengths(options.weakness, face_muscles_of(*scene.tissue));
+  if (!motion.expression)
+    throw InputError("--weakness " + options.weakness.front() +
+                     ": needs an expression, by --expression or in the words of --motion");
+  motion.expression = [healthy = motion.expression, strengths](double time_s) {
+    std::vector<double> excitation = healthy(time_s);
+    for (std::size_t m = 0; m < excitation.size() && m < strengths.size(); ++m)
+      excitation[m] *= strengths[m];
+    return excitation;
+  };
   return motion;
 }
 

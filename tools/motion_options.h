@@ -18,7 +18,8 @@ struct MotionOptions {
   std::filesystem::path patient = {};  // case folder; empty: the built-in patient
   std::filesystem::path plan = {};     // of an operation before the motion; empty: none
   std::string motion = {};
-  std::string expression = {};  // of the face; empty: none
+  std::string expression = {};             // of the face; empty: none
+  std::vector<std::string> weakness = {};  // of the face's muscles, unparsed
   MotionSettings settings = {};
   MuscleMotionSettings muscles = {};
   bool respect_contact = false;  // a recorded motion also slides where bones meet
@@ -31,7 +32,7 @@ struct MotionOptions {
 
 /// Case and motion, in the group "Basics".
 void add_motion(CLI::App& command, MotionOptions& motion);
-/// --expression, and a --motion that may then be left out.
+/// --expression and --weakness, and a --motion that may then be left out.
 void add_expression(CLI::App& command, MotionOptions& motion);
 /// Rules of pairs of parts, in the group "Contact".
 void add_pairs(CLI::App& command, MotionOptions& motion);

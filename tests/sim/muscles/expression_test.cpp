@@ -4,6 +4,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/files.h"
+#include "sim/muscles/face_weakness.h"
 
 namespace condyle {
 namespace {
@@ -43,6 +44,20 @@ TEST(Expression, ASideExcitesMusclesInTheMiddle) {
   EXPECT_NEAR(make_expression("AU23:0.5:left+AU23:0.2:right", ring).at(1)[0], 0.7, 1e-12);
   const ExpressionLevel level{.name = "AU23", .left = 0.2, .right = 0.6};
   EXPECT_EQ(excitation_of({&level, 1}, ring)[0], 0.6);
+}
+
+TEST(FaceWeakness, IsOfASideAMuscleOrBothSides) {
+  std::vector<FaceMuscle> muscles = pair_of_muscles();
+  muscles.push_back({.name = "ring", .kind = "ring", .lines = {}});
+  using Strengths = std::vector<double>;
+  const auto of = [&](std::vector<std::string> specs) { return muscle_strengths(specs, muscles); };
+  EXPECT_EQ(of({}), (Strengths{1, 1, 1}));
+  EXPECT_EQ(of({"left:0.5"}), (Strengths{0.5, 1, 0.75}));
+  EXPECT_EQ(of({"left:0.5", "right:0.5"}), (Strengths{0.5, 0.5, 0.5}));
+  EXPECT_EQ(of({"right:0.5", "zygomaticus_major:0.5"}), (Strengths{0.5, 0.25, 0.75}));
+  EXPECT_EQ(of({"left_zygomaticus_major:0"}), (Strengths{0, 1, 1}));
+  for (const char* wrong : {"left", "left:1.5", "left:-1", "left:x", "masseter:0.5", ":1", "a:1:2"})
+    EXPECT_THROW(of({wrong}), InputError) << wrong;
 }
 
 TEST(Expression, RisesAndFallsBetweenItsTimesWithoutOvershoot) {
