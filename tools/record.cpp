@@ -11,6 +11,7 @@
 #include "render/recording/frame_renderer.h"
 #include "render/recording/recording_identity.h"
 #include "sim/operated/state_before.h"
+#include "sim/report/expression_report.h"
 #include "sim/report/motion_plots.h"
 #include "sim/report/report.h"
 #include "sim/report/trace.h"
@@ -63,6 +64,29 @@ std::string with_pictures(const std::string& report, const RenderMetadata& facts
   auto json = nlohmann::ordered_json::parse(report);
   json["pictures"] = {
       {"driver", facts.driver}, {"samples_asked", facts.samples_asked}, {"samples", facts.samples}};
+  return json.dump(2) + "\n";
+}
+
+/// The same expression before the operation at the time of the report; none without a plan.
+std::optional<ExpressionMeasures> expression_before(const RecordOptions& options, const Case& uncut,
+                                                    const MotionReport& report,
+                                                    SimulatorSettings settings, ProgressBar& bar) {
+  if (options.motion.plan.empty() || report.expression().findings.empty()) return std::nullopt;
+  settings.face = false;
+  const Scene before = make_scene(uncut, settings, bar.callback());
+  bar.show("the expression before the operation", 0.9);
+  Playback playback(before, motion_of(options.motion, before, settings.threads), settings,
+                    options.motion.respect_contact);
+  const double time_s = std::min(report.expression_time_s(), playback.motion().duration_s);
+  return expression_measures(before, playback.at(time_s).tissue);
+}
+
+/// Writes expression.csv, and puts the state before into the report.
+std::string with_expression(const std::string& report, const fs::path& folder,
+                            const ExpressionMeasures& measures, const ExpressionMeasures* before) {
+  write_file(folder / "expression.csv", expression_csv(measures, before));
+  auto json = nlohmann::ordered_json::parse(report);
+  json["expression"] = expression_json(measures, before);
   return json.dump(2) + "\n";
 }
 
@@ -140,9 +164,13 @@ int run_record(const RecordOptions& options, const CommonOptions& common) {
     bar.show(fmt::format("frame {} of {}", i + 1, times.count), (i + 1.0) / times.count);
   }
   if (pictures) pictures->wait();
+  const auto before = expression_before(options, patient, report, settings, bar);
   bar.clear();
   trace.finish();
   std::string json = report.json();
+  const ExpressionMeasures expression = report.expression();
+  if (!expression.findings.empty())
+    json = with_expression(json, options.out, expression, before ? &*before : nullptr);
   if (pictures) json = with_pictures(json, pictures->facts());
   write_file(options.out / "report.json", json);
   if (motion.muscles) write_file(options.out / "excitations.csv", excitations_csv(motion));
@@ -156,7 +184,8 @@ int run_record(const RecordOptions& options, const CommonOptions& common) {
     for (const auto& note : motion.notes) fmt::print(stderr, "note: {}\n", note);
     if (const auto lacks = pictures ? pictures->facts().shortfall() : ""; !lacks.empty())
       fmt::print(stderr, "note: {}; --edges fxaa or --supersample 2 smooth them\n", lacks);
-    fmt::print(stderr, "{}", report.text());
+    fmt::print(stderr, "{}{}", report.text(),
+               expression_text(expression, before ? &*before : nullptr));
     if (pictures && pictures->kept() > 0)
       fmt::print(stderr, "{} frames were there already and were kept\n", pictures->kept());
     fmt::print(stderr, "results are in {}\n", options.out.string());

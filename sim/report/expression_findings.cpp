@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <span>
+#include <string>
+#include <utility>
 
 #include "engine/core/units.h"
 #include "sim/muscles/expression_names.h"
@@ -12,8 +14,6 @@ namespace condyle {
 namespace {
 
 using Eigen::Vector3d;
-
-constexpr double upper_lip_mm = 1;  // above the line between the lips: on the upper one
 
 struct FacePoint {
   Vector3d rest = Vector3d::Zero(), now = Vector3d::Zero();
@@ -27,64 +27,131 @@ bool is_full_smile(std::span<const double> excitation, std::span<const FaceMuscl
                     [](double a, double b) { return std::abs(a - b) < 1e-6; });
 }
 
-}  // namespace
-
-std::vector<Finding> expression_findings(const Scene& scene, const TissueState& tissue) {
+/// Collects findings; ranges count for a full smile alone.
+struct Collected {
   std::vector<Finding> list;
-  if (!scene.tissue || tissue.excitation.empty()) return list;
-  const auto& muscles = face_muscles_of(*scene.tissue);
-  const bool smile = is_full_smile(tissue.excitation, muscles);
-  const auto add = [&](const std::string& name, const char* unit, double value, double low,
-                       double high, const char* published) {
+  bool smile = false;
+
+  void add(const std::string& name, const char* unit, double value, double low = 1, double high = 0,
+           const char* published = "", bool input = true, const char* why = "") {
     list.push_back({.name = name,
                     .unit = unit,
                     .value = value,
                     .low = smile ? low : 1,
                     .high = smile ? high : 0,
                     .published = smile ? published : "",
-                    .input = true});  // forces and attachments were chosen for such values
-  };
-  const TissueState at_rest = rest_tissue(*scene.tissue);
-  const auto point = [&](const char* name, double above_mm = 0) -> std::optional<FacePoint> {
-    const auto mark = scene.patient.landmarks.find(name);
-    if (!mark) return std::nullopt;
-    const Vector3d at = *mark + above_mm * Vector3d::UnitZ();
-    return FacePoint{carried_point(*scene.tissue, at_rest, at),
-                     carried_point(*scene.tissue, tissue, at)};
-  };
-  const auto left = point("left_cheilion"), right = point("right_cheilion");
-  if (!left || !right) return list;
+                    .input = input,
+                    .why = why});
+  }
+};
+
+void add_corners(const FacePoint& left, const FacePoint& right, Collected& to) {
   const std::array<std::pair<const char*, Vector3d>, 2> corners = {
-      {{"left", left->moved()},
-       {"right", Vector3d(right->moved().cwiseProduct(Vector3d(-1, 1, 1)))}}};
+      {{"left", left.moved()},
+       {"right", Vector3d(right.moved().cwiseProduct(Vector3d(-1, 1, 1)))}}};
   for (const auto& [side, moved] : corners) {
     const std::string corner = std::string(side) + " corner of the mouth";
-    add(corner + ": displacement", "mm", moved.norm(), 9, 14, "9.3 +- 2.8; 11 to 14");
-    add(corner + ": direction above the horizontal, frontal", "deg",
-        std::atan2(moved.z(), moved.x()) * degrees_per_radian, 35, 60, "47");
+    to.add(corner + ": displacement", "mm", moved.norm(), 9, 14, "9.3 +- 2.8; 11 to 14");
+    to.add(corner + ": direction above the horizontal, frontal", "deg",
+           std::atan2(moved.z(), moved.x()) * degrees_per_radian, 35, 60, "47");
+    to.add(corner + ": displacement outward", "mm", moved.x());
+    to.add(corner + ": displacement backward", "mm", moved.y());
+    to.add(corner + ": displacement upward", "mm", moved.z());
   }
-  add("asymmetry of the corners' displacement", "mm",
-      (corners[0].second - corners[1].second).norm(), 0, 3, "0.5 to 2.3");
-  const double width = (left->rest - right->rest).norm();
-  add("change of the mouth's width", "%", 100 * ((left->now - right->now).norm() / width - 1), 20,
-      35, "27");
-  const auto nose = point("subnasale"), red = point("labrale_superius"),
-             margin = point("stomion", upper_lip_mm);
-  const auto change_of_height = [&](const FacePoint& lip) {
-    return 100 * ((nose->now.z() - lip.now.z()) / (nose->rest.z() - lip.rest.z()) - 1);
+  to.add("asymmetry of the corners' displacement", "mm",
+         (corners[0].second - corners[1].second).norm(), 0, 3, "0.5 to 2.3");
+  const double a = corners[0].second.norm(), b = corners[1].second.norm();
+  if (const double more = std::max(a, b); more > 0)
+    to.add("asymmetry index: difference of the corners' displacements over the larger", "%",
+           100 * std::abs(a - b) / more);
+  to.add("change of the mouth's width", "%",
+         100 * ((left.now - right.now).norm() / (left.rest - right.rest).norm() - 1), 20, 35, "27");
+}
+
+/// What the lips show of the upper teeth.
+void add_teeth(const SmileMeasures& at_rest, const SmileMeasures& now, Collected& to) {
+  constexpr const char* why = "the rise of this lip, or the height of lip and teeth at rest";
+  if (at_rest.incisor_show_mm)
+    to.add("upper incisor show at rest", "mm", *at_rest.incisor_show_mm, 1, 0,
+           "2 to 5 with relaxed, parted lips", false);
+  if (now.incisor_show_mm)
+    to.add("upper incisor show", "mm", *now.incisor_show_mm, 1, 0, "", false);
+  if (now.crown_fraction)
+    to.add("upper incisor show over the crown", "%", 100 * *now.crown_fraction, 75, 100,
+           "75 to 100", false, why);
+  if (now.gum_show_mm)
+    to.add("gum show above the upper incisors", "mm", *now.gum_show_mm, 0, 2,
+           "1 to 2 accepted, over 3 to 4 gummy", false, why);
+  if (now.buccal_corridor)
+    to.add("buccal corridor, both sides, over the mouth's width", "%", 100 * *now.buccal_corridor,
+           1, 0, "", false);
+}
+
+/// Margins of the lips at rest and now; none without an opening between them.
+struct MarginsOfLips {
+  LipMargins rest, now;
+};
+std::optional<MarginsOfLips> margins_of_lips(const Scene& scene, const TissueState& at_rest,
+                                             const TissueState& tissue) {
+  const Part* face = scene.patient.find(Role::face);
+  const auto upper = scene.patient.landmarks.find("upper_incisal_point"),
+             lower = scene.patient.landmarks.find("lower_incisal_point");
+  if (!face || !upper || !lower) return std::nullopt;
+  const MouthOutline mouth =
+      find_mouth(face->mesh, scene.patient.landmarks, 0.5 * (*upper + *lower));
+  if (!mouth.found()) return std::nullopt;
+  const LipSurfaces lips = lip_surfaces(face->mesh, mouth);
+  const auto margins = [&](const TissueState& state) {
+    std::vector<Eigen::Vector3f> vertices;
+    deform_face(*scene.tissue, state, vertices);
+    return lip_margins(lips, vertices);
   };
-  if (nose && margin)
-    add("change of the upper lip's length", "%", change_of_height(*margin), -32, -20, "-23 to -30");
+  return MarginsOfLips{margins(at_rest), margins(tissue)};
+}
+
+}  // namespace
+
+ExpressionMeasures expression_measures(const Scene& scene, const TissueState& tissue) {
+  ExpressionMeasures measures;
+  if (!scene.tissue || tissue.excitation.empty()) return measures;
+  const auto& muscles = face_muscles_of(*scene.tissue);
+  Collected found{.list = {}, .smile = is_full_smile(tissue.excitation, muscles)};
+  const TissueState at_rest = rest_tissue(*scene.tissue);
+  const auto point = [&](const char* name) -> std::optional<FacePoint> {
+    const auto mark = scene.patient.landmarks.find(name);
+    if (!mark) return std::nullopt;
+    return FacePoint{carried_point(*scene.tissue, at_rest, *mark),
+                     carried_point(*scene.tissue, tissue, *mark)};
+  };
+  const auto left = point("left_cheilion"), right = point("right_cheilion");
+  if (!left || !right) return measures;
+  add_corners(*left, *right, found);
+  const auto nose = point("subnasale"), red = point("labrale_superius");
+  const auto lips = margins_of_lips(scene, at_rest, tissue);
+  const auto change_below_nose = [&](double rest_z, double now_z) {
+    return 100 * ((nose->now.z() - now_z) / (nose->rest.z() - rest_z) - 1);
+  };
+  if (nose && lips)
+    found.add(
+        "change of the upper lip's length", "%",
+        change_below_nose(lips->rest.upper_at(nose->rest.x()), lips->now.upper_at(nose->now.x())),
+        -32, -20, "-23 to -30");
   if (nose && red)
-    add("change of the upper lip's skin, subnasale to labrale superius", "%",
-        change_of_height(*red), 1, 0, "");
+    found.add("change of the upper lip's skin, subnasale to labrale superius", "%",
+              change_below_nose(red->rest.z(), red->now.z()));
   const auto length = face_muscle_lengths(*scene.tissue, tissue),
              rest_length = face_muscle_lengths(*scene.tissue, at_rest);
   for (std::size_t m = 0; m < muscles.size(); ++m)
     if (muscles[m].kind == "zygomaticus_major")
-      add(muscles[m].name + ": length over that at rest", "", length[m] / rest_length[m], 0.82,
-          0.89, "0.856");
-  return list;
+      found.add(muscles[m].name + ": length over that at rest", "", length[m] / rest_length[m],
+                0.82, 0.89, "0.856");
+  if (lips) {
+    measures.at_rest = smile_measures(scene.patient, lips->rest, at_rest.X_CB);
+    measures.now = smile_measures(scene.patient, lips->now, tissue.X_CB);
+  }
+  add_teeth(measures.at_rest, measures.now, found);
+  measures.findings = std::move(found.list);
+  return measures;
 }
 
 }  // namespace condyle

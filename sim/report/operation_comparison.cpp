@@ -7,6 +7,7 @@
 
 #include "engine/core/html_text.h"
 #include "sim/frame/part_names.h"
+#include "sim/motion/measure_pose.h"
 #include "sim/report/motion_extremes.h"
 #include "sim/report/plots.h"
 

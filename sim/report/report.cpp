@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "sim/frame/part_names.h"
-#include "sim/report/expression_findings.h"
+#include "sim/report/expression_report.h"
 
 namespace condyle {
 namespace {
@@ -202,7 +202,7 @@ void MotionReport::add(const FrameState& frame) {
     return std::accumulate(tissue.excitation.begin(), tissue.excitation.end(), 0.0);
   };
   if (const double now = strength(frame.tissue); now > 0 && now >= strength(expressed_))
-    expressed_ = frame.tissue;
+    expressed_ = frame.tissue, expressed_time_s_ = frame.time_s;
   for (std::size_t i = 0; i < stage_names.size(); ++i)
     stage_ms_[std::string(stage_names[i])].push_back(frame.times.ms[i]);
   ++frames_;
@@ -225,8 +225,7 @@ Json MotionReport::motion_json() const {
 
 std::vector<Finding> MotionReport::all_findings() const {
   std::vector<Finding> found = findings(scene_, motion_, series_);
-  for (Finding& finding : expression_findings(scene_, expressed_))
-    found.push_back(std::move(finding));
+  for (Finding& finding : expression().findings) found.push_back(std::move(finding));
   return found;
 }
 
@@ -350,6 +349,7 @@ std::string MotionReport::json() const {
 
   add_findings(json);
   json["warnings"] = physiology_warnings(series_);
+  if (!expressed_.excitation.empty()) json["expression"] = expression_json(expression());
 
   json["contact"] = contact_json();
   if (scene_.tissue) json["tissue"] = tissue_json();

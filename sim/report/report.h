@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim/motion/joint_fit.h"
+#include "sim/report/expression_findings.h"
 #include "sim/report/motion_extremes.h"
 #include "sim/report/motion_findings.h"
 #include "sim/simulator/simulator.h"
@@ -31,6 +32,11 @@ class MotionReport {
   std::string json() const;
   /// Summary for the terminal.
   std::string text() const;
+
+  /// The face in the frame with the strongest expression added so far, and that frame's time; empty
+  /// without an expression.
+  ExpressionMeasures expression() const { return expression_measures(scene_, expressed_); }
+  double expression_time_s() const { return expressed_time_s_; }
 
   /// Measures of the frames added so far: the input of plots and findings.
   const MotionSeries& series() const { return series_; }
@@ -61,7 +67,8 @@ class MotionReport {
       0;  // largest deviation of the incisal point from the prescribed motion, due to contact
   std::vector<PairRecord> pairs_;
   TissueState expressed_;  // of the frame with the strongest expression
-  FrameState widest_;      // frame of largest opening
+  double expressed_time_s_ = 0;
+  FrameState widest_;  // frame of largest opening
   int widest_frame_ = 0;
   std::vector<FrameState>
       samples_;  // a few frames spread over the motion, for the solve without warm start

@@ -58,8 +58,8 @@ TEST(Expression, WordsOfAMotionMoveTheFaceAndTheJaw) {
     const std::string quantity = finding["quantity"];
     if (quantity == "left corner of the mouth: direction above the horizontal, frontal")
       EXPECT_FALSE(finding.contains("band")) << "it is no full smile";
-    if (quantity == "left zygomaticus major: length over that at rest") left = finding["value"];
-    if (quantity == "right zygomaticus major: length over that at rest") right = finding["value"];
+    if (quantity == "left_zygomaticus_major: length over that at rest") left = finding["value"];
+    if (quantity == "right_zygomaticus_major: length over that at rest") right = finding["value"];
   }
   EXPECT_LT(left, right - 0.03) << "only the left one pulls";
 }
@@ -92,6 +92,9 @@ TEST(Expression, WrongOnesAreRefused) {
   expect_refused({"--expression", "smile:2"}, "0 to 1, not 2");
   expect_refused({"--expression", "smile:1:up"}, "left|right");
   expect_refused({"--expression", "AU99"}, "AU12");
+  expect_refused({"--expression", "smile", "--weakness", "left:2"}, "1 (healthy), not 2");
+  expect_refused({"--expression", "smile", "--weakness", "masseter:0"}, "masseter");
+  expect_refused({"--motion", "rest", "--weakness", "left:0"}, "needs an expression");
   expect_refused({"--motion", "smile 1.2"}, "strength must be 0 to 1");
   expect_refused({"--motion", "smirk; close"}, "\"smirk\"");
   expect_refused({"--motion", "smile", "--expression", "sad"}, "expressions of its own");
