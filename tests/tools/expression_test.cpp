@@ -25,7 +25,7 @@ TEST(Expression, ASmileIsRecordedAndMeasured) {
   int corners = 0;
   for (const auto& finding : report["findings"]) {
     const std::string quantity = finding["quantity"];
-    if (quantity.find("corner of the mouth: displacement") == std::string::npos) continue;
+    if (!quantity.ends_with("corner of the mouth: displacement")) continue;
     ++corners;
     EXPECT_GT(double(finding["value"]), 5);
     EXPECT_EQ(finding["emergent"], false) << "forces were chosen for it";
@@ -56,12 +56,43 @@ TEST(Expression, WordsOfAMotionMoveTheFaceAndTheJaw) {
   double left = 0, right = 0;
   for (const auto& finding : report["findings"]) {
     const std::string quantity = finding["quantity"];
-    if (quantity == "left corner of the mouth: direction above the horizontal, frontal")
+    if (quantity == "left corner of the mouth: direction above the horizontal, frontal") {
       EXPECT_FALSE(finding.contains("band")) << "it is no full smile";
+    }
     if (quantity == "left_zygomaticus_major: length over that at rest") left = finding["value"];
     if (quantity == "right_zygomaticus_major: length over that at rest") right = finding["value"];
   }
   EXPECT_LT(left, right - 0.03) << "only the left one pulls";
+}
+
+TEST(Expression, APalsiedFaceIsComparedBeforeAndAfterAPlan) {
+  const Folder folder;
+  const std::string plan = folder / "plan.json";
+  const fs::path out = folder / "out";
+  ASSERT_EQ(condyle({"plan", "new", "--out", plan}).code, 0);
+  ASSERT_EQ(condyle({"plan", "cut", plan, "genioplasty"}).code, 0);
+  ASSERT_EQ(condyle({"plan", "move", plan, "chin", "forward", "4"}).code, 0);
+  const Outcome done = condyle({"run", "--expression", "smile", "--weakness", "right:0", "--plan",
+                                plan, "--frames", "2", "--out", out});
+  ASSERT_EQ(done.code, 0) << done.err;
+  EXPECT_NE(done.err.find("before"), std::string::npos) << done.err;
+  const auto report = nlohmann::json::parse(read_text(out / "report.json"));
+  const auto value = [](const nlohmann::json& findings, const std::string& quantity) {
+    for (const auto& finding : findings)
+      if (finding["quantity"] == quantity) return double(finding["value"]);
+    ADD_FAILURE() << quantity;
+    return 0.0;
+  };
+  for (const auto& findings : {report["findings"], report["expression"]["before"]["findings"]}) {
+    EXPECT_GT(value(findings, "left corner of the mouth: displacement"), 8);
+    EXPECT_LT(value(findings, "right corner of the mouth: displacement"), 2);
+    EXPECT_GT(value(findings, "upper incisor show"), value(findings, "upper incisor show at rest"));
+  }
+  EXPECT_EQ(report["expression"]["teeth"].size(), 10u);
+  EXPECT_EQ(report["expression"]["before"]["teeth"].size(), 10u);
+  const std::string csv = read_text(out / "expression.csv");
+  EXPECT_TRUE(csv.starts_with("quantity,unit,value,low,high,published,before\n")) << csv;
+  EXPECT_NE(csv.find("\"tooth 11: show\",mm,"), std::string::npos) << csv;
 }
 
 TEST(Expression, WordsAreLeftOutWithANoteWhereThereIsNoTissue) {

@@ -8,7 +8,8 @@ TEST_F(WindowSession, SlidersMoveTheLiveFaceAndAreSavedWithTheSession) {
   start({"--motion", "smile 0.5 over 0.3; hold 1"});
   ASSERT_TRUE(wait_until(idle, 120));
   const auto excitation = [](const Json& s) { return double(s["frame"]["excitation"]); };
-  EXPECT_TRUE(wait_until([&](const Json& s) { return excitation(s) > 0.5; }))
+  EXPECT_TRUE(press("space"));
+  EXPECT_TRUE(wait_until([&](const Json& s) { return excitation(s) > 0.5; }, 30))
       << "the motion's own expression";
   EXPECT_TRUE(press("space"));
   ASSERT_TRUE(wait_until([](const Json& s) { return s["playing"] == false; }));
