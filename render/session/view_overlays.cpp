@@ -108,8 +108,8 @@ std::vector<TreeItem> expression_items(const SessionPatient& patient) {
   if (!model || face_muscles_of(*model).empty()) return {};
   std::vector<TreeItem> items;
   for (const NamedExpression& each : named_expressions())
-    items.push_back({each.name, each.action_unit() ? each.name + ", " + each.action
-                                                   : readable_name(each.name)});
+    items.push_back(
+        {each.name, each.action_unit() ? each.name + ", " + each.action : display_name(each.name)});
   return items;
 }
 

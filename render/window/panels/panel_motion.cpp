@@ -125,7 +125,8 @@ void Panels::Drawing::motion_choice() {
   tooltip(
       pen,
       "A motion in words; Enter plays it. open 40 over 1.5; close; hinge 10; protrude 6; retrude; "
-      "left 8; right 8; rest; hold 0.5; posselt; chew left 10. Lengths in mm, times in s. "
+      "left 8; right 8; rest; hold 0.5; posselt; chew left 10; smile 0.8. Lengths in mm, times in "
+      "s. "
       "A motion file can be dropped on the window");
 }
 
