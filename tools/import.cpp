@@ -118,6 +118,12 @@ void add_meshes(Commands& commands, CLI::App& import) {
                   "iy_mm, iz_mm, max_force_N and more")
       ->type_name("FILE");
   command
+      .add_option(
+          "--face-muscles", request.face_muscles,
+          "CSV of the muscles of facial expression: muscle, side, fibre, point, x_mm, y_mm, "
+          "z_mm and more")
+      ->type_name("FILE");
+  command
       .add_option("--mechanics", request.mechanics,
                   "JSON of the jaw as a rigid body: mass, inertia, damping, guide of the condyles")
       ->type_name("FILE");

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "engine/minimize/objective.h"
@@ -9,7 +11,8 @@ namespace condyle {
 
 /// A muscle's line through points: of the tissue, each interpolated between nodes, or fixed. Its
 /// tension is the same along the whole line. It pulls, and never pushes: the tension rises linearly
-/// from the shortest length on, up to a limit.
+/// from the shortest length on, up to a limit; or it is the limit times Hill's active force-length
+/// curve.
 struct MuscleLine {
   struct Point {
     std::vector<int> node = {};
@@ -28,6 +31,10 @@ struct MuscleLine {
   double shortest = 0;        // mm, above 0: without tension up to here
   double stiffness = 0;       // N/mm beyond
   double limit = 0;           // N
+  double optimal = 0;         // mm; above 0: Hill's law, with the limit at this length
+
+  /// Width of the force-length curve exp(-(length / optimal - 1)^2 / width); source: Thelen 2003.
+  static constexpr double hill_width = 0.45;
 
   double length(const Points& x) const {
     double sum = 0;
@@ -41,10 +48,19 @@ struct MuscleLine {
     double energy, tension, rise;
   };
   Law law(double length) const {
+    if (optimal > 0) return hill(length);
     const double over = length - shortest, full = stiffness > 0 ? limit / stiffness : 0;
     if (over <= 0 || full <= 0) return {0, 0, 0};
     if (over < full) return {0.5 * stiffness * over * over, stiffness * over, stiffness};
     return {limit * (over - 0.5 * full), limit, 0};
+  }
+
+  Law hill(double length) const {
+    const double over = length / optimal - 1, root = std::sqrt(hill_width);
+    const double tension = limit * std::exp(-over * over / hill_width);
+    const double area = std::erf(over / root) + std::erf(1 / root);  // from length 0 on
+    return {0.5 * std::sqrt(std::numbers::pi) * root * limit * optimal * area, tension,
+            -2 * over / (hill_width * optimal) * tension};
   }
 
   double energy(const Points& x) const { return law(length(x)).energy; }
@@ -63,7 +79,7 @@ struct MuscleLine {
     return now.energy;
   }
 
-  /// Second derivative of the energy along d; not negative.
+  /// Second derivative of the energy along d; negative only where Hill's law falls with the length.
   double curvature(const Points& x, const Points& d) const {
     const Law now = law(length(x));
     if (now.tension <= 0) return 0;

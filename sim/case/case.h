@@ -7,6 +7,7 @@
 #include "engine/math/pose.h"
 #include "sim/case/canal.h"
 #include "sim/case/condylar_path.h"
+#include "sim/case/face_muscle.h"
 #include "sim/case/jaw_mechanics.h"
 #include "sim/case/landmarks.h"
 #include "sim/case/motion_parameters.h"
@@ -41,7 +42,8 @@ struct Case {
   // The closed position, from which openings count: X_CM. Found by make_scene(), not stored.
   Pose X_CM_closed = {};
 
-  std::vector<Muscle> muscles = {};  // empty: default muscles fitted to its landmarks
+  std::vector<Muscle> muscles = {};           // empty: default muscles fitted to its landmarks
+  std::vector<FaceMuscle> face_muscles = {};  // of expression; empty: default ones likewise
   std::optional<JawMechanics> mechanics = std::nullopt;  // where measured
   std::vector<Canal> canals = {};                        // that cuts must avoid, where known
   // The mandible in the bite that was scanned with the dental arches, where there is one.

@@ -11,6 +11,7 @@ constexpr const char* case_format = "condyle case";
 // canals, where there are any.
 constexpr int case_version = 2;
 constexpr const char* muscles_file = "muscles.csv";
+constexpr const char* face_muscles_file = "face_muscles.csv";
 constexpr const char* mechanics_file = "mechanics.json";
 constexpr double max_scan_opening_mm = 60;
 constexpr std::size_t max_case_json_bytes = std::size_t{16} << 20;

@@ -26,8 +26,9 @@ struct ImportRequest {
   // mandible or another piece; by default the cranium or mandible, whichever is nearer.
   std::map<std::string, std::string> parents = {};
   // In millimetres regardless of the units of the surfaces, with the same axes; empty = none.
-  std::filesystem::path muscles = {};    // CSV, see sim/case/muscle_table.h
-  std::filesystem::path mechanics = {};  // JSON, see sim/case/jaw_mechanics.h
+  std::filesystem::path muscles = {};       // CSV, see sim/case/muscle_table.h
+  std::filesystem::path face_muscles = {};  // CSV, see sim/case/face_muscle_table.h
+  std::filesystem::path mechanics = {};     // JSON, see sim/case/jaw_mechanics.h
 };
 
 /// Reads the files, converts them to LPS mm, checks and repairs them where possible; `notes` of the

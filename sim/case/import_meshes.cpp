@@ -16,6 +16,7 @@
 #include "sim/case/case_format.h"
 #include "sim/case/case_io.h"
 #include "sim/case/import_checks.h"
+#include "sim/case/import_face_muscles.h"
 #include "sim/case/import_muscles.h"
 #include "sim/case/jaw_order.h"
 #include "sim/case/landmark_files.h"
@@ -323,6 +324,8 @@ Case import_meshes(const ImportRequest& request) {
   estimate_landmarks(patient);
   estimate_profile_landmarks(patient);
   import_muscles(request, box, patient);
+  if (!request.face_muscles.empty())
+    import_face_muscles(request.face_muscles, request.source.axes_to_lps, patient);
   return patient;
 }
 

@@ -10,6 +10,7 @@
 #include "sim/case/canal_list.h"
 #include "sim/case/case_format.h"
 #include "sim/case/case_io.h"
+#include "sim/case/face_muscle_table.h"
 #include "sim/case/json_file.h"
 #include "sim/case/landmark_files.h"
 #include "sim/case/muscle_table.h"
@@ -297,6 +298,8 @@ Case load_case(const fs::path& given) {
   if (const auto bite = root.find("bite")) patient.X_CM_bite = load_bite(*bite);
   if (const auto muscles = root.find("muscles"))
     patient.muscles = read_muscles(inside(folder, *muscles), patient.notes);
+  if (const auto muscles = root.find("face_muscles"))
+    patient.face_muscles = read_face_muscles(inside(folder, *muscles)).muscles;
   if (const auto mechanics = root.find("mechanics"))
     patient.mechanics = read_mechanics(inside(folder, *mechanics));
   if (const auto rules = root.find("contact_pairs"))

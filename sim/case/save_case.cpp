@@ -17,6 +17,7 @@
 #include "sim/case/canal_list.h"
 #include "sim/case/case_format.h"
 #include "sim/case/case_io.h"
+#include "sim/case/face_muscle_table.h"
 #include "sim/case/landmark_files.h"
 #include "sim/case/muscle_table.h"
 #include "sim/case/pair_rules.h"
@@ -89,6 +90,7 @@ Json to_json(const Case& patient) {
   if (patient.scan_opening_mm) root["scan_opening_mm"] = *patient.scan_opening_mm;
   if (const auto& bite = patient.X_CM_bite) root["bite"] = bite_json(*bite);
   if (!patient.muscles.empty()) root["muscles"] = muscles_file;
+  if (!patient.face_muscles.empty()) root["face_muscles"] = face_muscles_file;
   if (patient.mechanics) root["mechanics"] = mechanics_file;
   for (const auto& rule : patient.pair_rules) root["contact_pairs"].push_back(to_json(rule));
   for (const auto& entry : motion_parameter_names())
@@ -145,6 +147,7 @@ void check_replaceable(const fs::path& folder) {
   files.erase("case.json");
   files.erase("landmarks.csv");
   files.erase(muscles_file);
+  files.erase(face_muscles_file);
   files.erase(mechanics_file);
   if (saved.contains("parts") && saved["parts"].is_array())
     for (const auto& part : saved["parts"])
@@ -215,6 +218,8 @@ void save_case(const Case& patient, const fs::path& given) {
     if (!patient.landmarks.points.empty())
       write_file(made / "landmarks.csv", landmarks_csv(patient.landmarks));
     if (!patient.muscles.empty()) write_file(made / muscles_file, muscles_csv(patient.muscles));
+    if (!patient.face_muscles.empty())
+      write_file(made / face_muscles_file, face_muscles_csv(patient.face_muscles));
     if (patient.mechanics) write_file(made / mechanics_file, mechanics_json(*patient.mechanics));
     write_file(made / "case.json",
                to_json(patient).dump(1, ' ', false, Json::error_handler_t::replace) + "\n");

@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "engine/mesh/rims.h"
 #include "sim/case/front_profile.h"
 
 namespace condyle {
@@ -45,6 +46,37 @@ Found mouth(const FrontProfile& front, double x0, double low, double high) {
   return gap ? gap : valley;
 }
 
+/// Where the upper lip meets the nose: the deepest hollow between them.
+Found below_nose(const FrontProfile& front, double x0, double low, double high) {
+  Found best;
+  double deepest = 0;
+  for (const auto& [bin, y] : front) {
+    const double z = profile_height(bin);
+    if (z < low || z > high) continue;
+    if (const double depth = hollow_depth(front, bin, y); depth > deepest) {
+      deepest = depth;
+      best = Eigen::Vector3d(x0, y, z);
+    }
+  }
+  return best;
+}
+
+/// Both ends of the opening between the lips, right and left, where the face has one.
+std::optional<std::pair<Eigen::Vector3d, Eigen::Vector3d>> mouth_corners(
+    const TriMesh& face, const Eigen::Vector3d& stomion) {
+  constexpr double narrowest = 30, widest = 80, off_middle = 12;  // mm
+  const auto by_x = [&](int a, int b) { return face.vertices[a].x() < face.vertices[b].x(); };
+  for (const auto& rim : rims_of(face)) {
+    const auto [right, left] = std::minmax_element(rim.begin(), rim.end(), by_x);
+    const Eigen::Vector3d &a = face.vertices[*right], &b = face.vertices[*left];
+    const Eigen::Vector3d middle = 0.5 * (a + b) - stomion;
+    if (b.x() - a.x() > narrowest && b.x() - a.x() < widest &&
+        std::hypot(middle.x(), middle.z()) < off_middle)
+      return std::pair(a, b);
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 void estimate_profile_landmarks(Case& patient) {
@@ -75,7 +107,14 @@ void estimate_profile_landmarks(Case& patient) {
     if (const auto stomion = patient.landmarks.find("stomion")) {
       add("labrale_superius", most_anterior(front, x0, stomion->z() + 0.5, stomion->z() + 9));
       add("labrale_inferius", most_anterior(front, x0, stomion->z() - 9, stomion->z() - 0.5));
+      if (const auto corners = mouth_corners(face->mesh, *stomion)) {
+        add("right_cheilion", corners->first);
+        add("left_cheilion", corners->second);
+      }
     }
+    const auto nose = patient.landmarks.find("pronasale"),
+               red = patient.landmarks.find("labrale_superius");
+    if (nose && red) add("subnasale", below_nose(front, x0, red->z() + 3, nose->z() - 3));
     add("soft_pogonion", most_anterior(front, x0, chin_z - 8, chin_z + 8));
   }
   if (!added.empty()) patient.notes.push_back("landmarks estimated from the surfaces: " + added);

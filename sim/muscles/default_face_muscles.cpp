@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-
-#include "engine/core/error.h"
+#include <optional>
 
 namespace condyle {
 namespace {
@@ -48,20 +47,48 @@ const std::vector<Straight>& straight_muscles() {
        {1.5, 5, 0.5}, 12, 5, 3, 9, 0.2, 0.7, 0.5},
       {"depressor_labii_inferioris", "mental_foramen", {-14, -18, -6}, true, true, "cheilion",
        {-15.5, -10.4, -7.5}, 12, 8, 3, 6, 0.2, 0.8, 0.5},
+      {"mentalis", "infradentale", {6.5, 1.5, -5}, true, true, "soft_pogonion",
+       {7.5, 1, 3}, 3, 3, 2, 9, 0.25, 0.8, 0.3},
   };
   // clang-format on
   return all;
 }
+
+struct Loop {
+  const char* kind;
+  double half_wide_mm, half_high_mm, width_mm;
+  int lines;
+  double limit_N, shortening, depth, spread_mm;
+};
+
+/// Only a deep loop, on the teeth's side, brings the lips forward.
+const std::vector<Loop>& loops() {
+  static const std::vector<Loop> all = {
+      {"orbicularis_oris_marginal", 28, 7, 4, 2, 6, 0.3, 0.3, 0},
+      {"orbicularis_oris_peripheral", 28, 14, 6, 3, 20, 0.42, 0.9, 3},
+  };
+  return all;
+}
+
+/// The outer part of orbicularis oculi below the eye: from the inner to the outer rim of the orbit.
+struct EyeArc {
+  const char* kind = "orbicularis_oculi";
+  double limit_N = 4, shortening = 0.2, depth = 0.4, width_mm = 8;
+  int lines = 2;
+};
 
 struct Side {
   const char* name;
   double sign;
 };
 
-Vector3d landmark(const Case& patient, const std::string& name) {
-  const auto found = patient.landmarks.find(name);
-  if (!found) throw InputError("muscles of the face: landmark " + name + " is missing");
-  return *found;
+/// Where landmarks are; none when one is missing.
+std::optional<Vector3d> placed(const Case& patient, const Side& side, const char* mark,
+                               const Vector3d& offset) {
+  auto found = patient.landmarks.find(std::string(side.name) + "_" + mark);
+  if (!found) found = patient.landmarks.find(mark);
+  if (!found) return std::nullopt;
+  return *found + Vector3d(side.sign, 1, 1).cwiseProduct(offset);
 }
 
 std::vector<FaceMusclePoint> line_between(const Vector3d& a, const Vector3d& b,
@@ -80,44 +107,47 @@ std::vector<FaceMusclePoint> line_between(const Vector3d& a, const Vector3d& b,
   return line;
 }
 
-FaceMuscle straight(const Case& patient, const Straight& of, const Side& side) {
+std::optional<FaceMuscle> straight(const Case& patient, const Straight& of, const Side& side) {
+  const auto a = placed(patient, side, of.origin, of.from),
+             b = placed(patient, side, of.insertion, of.to);
+  if (!a || !b) return std::nullopt;
   FaceMuscle muscle{.name = std::string(side.name) + "_" + of.kind,
                     .kind = of.kind,
                     .limit_N = of.limit_N,
                     .shortening = of.shortening,
                     .lines = {}};
-  const Vector3d mirror(side.sign, 1, 1);
-  const auto place = [&](const char* mark, const Vector3d& offset) -> Vector3d {
-    return landmark(patient, std::string(side.name) + "_" + mark) + mirror.cwiseProduct(offset);
-  };
-  const Vector3d a = place(of.origin, of.from), b = place(of.insertion, of.to);
-  const Vector3d out = mirror.cwiseProduct(Vector3d(0.6, -0.8, 0));
-  const Vector3d across = (b - a).cross(out).normalized();
+  const Vector3d out = Vector3d(side.sign * 0.6, -0.8, 0);
+  const Vector3d across = (*b - *a).cross(out).normalized();
   std::optional<BodyId> bone;
   if (of.on_bone) bone = of.on_mandible ? patient.jaw.lower_arch : cranium_body;
   for (int i = 0; i < of.lines; ++i) {
     const double t = of.lines > 1 ? static_cast<double>(i) / (of.lines - 1) - 0.5 : 0;
-    muscle.lines.push_back(line_between(a + t * of.width_mm * across,
-                                        b + t * of.end_width_mm * across, bone, of.from_depth,
+    muscle.lines.push_back(line_between(*a + t * of.width_mm * across,
+                                        *b + t * of.end_width_mm * across, bone, of.from_depth,
                                         of.to_depth));
   }
   return muscle;
 }
 
 /// A closed loop around the mouth.
-FaceMuscle loop(const Case& patient, const char* kind, double half_wide, double half_high,
-                double width, int lines, double limit_N, double depth) {
-  FaceMuscle muscle{.name = kind, .kind = kind, .limit_N = limit_N, .shortening = 0.3, .lines = {}};
-  const Vector3d left = landmark(patient, "left_cheilion"),
-                 right = landmark(patient, "right_cheilion");
-  const Vector3d upper = landmark(patient, "labrale_superius"),
-                 lower = landmark(patient, "labrale_inferius");
-  const Vector3d corners = 0.5 * (left + right), middle = 0.5 * (upper + lower);
-  const double reach = 0.5 * (left - right).norm();
-  for (int i = 0; i < lines; ++i) {
-    const double t = lines > 1 ? (static_cast<double>(i) / (lines - 1) - 0.5) * width : 0;
-    const double a = half_wide + t, b = half_high + t;
-    const int count = 32;
+std::optional<FaceMuscle> loop(const Case& patient, const Loop& of) {
+  const auto left = patient.landmarks.find("left_cheilion"),
+             right = patient.landmarks.find("right_cheilion"),
+             upper = patient.landmarks.find("labrale_superius"),
+             lower = patient.landmarks.find("labrale_inferius");
+  if (!left || !right || !upper || !lower) return std::nullopt;
+  FaceMuscle muscle{.name = of.kind,
+                    .kind = of.kind,
+                    .limit_N = of.limit_N,
+                    .shortening = of.shortening,
+                    .lines = {}};
+  const Vector3d corners = 0.5 * (*left + *right), middle = 0.5 * (*upper + *lower);
+  const double reach = 0.5 * (*left - *right).norm();
+  for (int i = 0; i < of.lines; ++i) {
+    const double t =
+        of.lines > 1 ? (static_cast<double>(i) / (of.lines - 1) - 0.5) * of.width_mm : 0;
+    const double a = of.half_wide_mm + t, b = of.half_high_mm + t;
+    constexpr int count = 32;
     std::vector<FaceMusclePoint> line;
     for (int n = 0; n <= count; ++n) {
       const double angle = 2 * std::numbers::pi * n / count;
@@ -126,43 +156,113 @@ FaceMuscle loop(const Case& patient, const char* kind, double half_wide, double 
       line.push_back(
           {.at = Vector3d(middle.x() + x, middle.y() + (corners.y() - middle.y()) * back * back,
                           middle.z() + z),
-           .depth = depth});
+           .depth = of.depth,
+           .spread_mm = of.spread_mm});
     }
     muscle.lines.push_back(std::move(line));
   }
   return muscle;
 }
 
+/// Below the margin of the orbit.
+std::optional<FaceMuscle> eye_arc(const Case& patient, const EyeArc& of, const Side& side) {
+  const auto inner = placed(patient, side, "orbit_medial_rim", {0, 0, 0}),
+             outer = placed(patient, side, "orbit_lateral_rim", {4, 1, 0}),
+             below = placed(patient, side, "orbitale", {2, -4, -10});
+  if (!inner || !outer || !below) return std::nullopt;
+  FaceMuscle muscle{.name = std::string(side.name) + "_" + of.kind,
+                    .kind = of.kind,
+                    .limit_N = of.limit_N,
+                    .shortening = of.shortening,
+                    .lines = {}};
+  const Vector3d center = 0.5 * (*inner + *outer), across = *inner - center, down = *below - center;
+  for (int i = 0; i < of.lines; ++i) {
+    const double t = (static_cast<double>(i) / (of.lines - 1) - 0.5) * of.width_mm;
+    constexpr int count = 16;
+    std::vector<FaceMusclePoint> line;
+    for (int n = 0; n <= count; ++n) {
+      const double angle = std::numbers::pi * n / count;
+      line.push_back({.at = center + std::cos(angle) * across +
+                            std::sin(angle) * (down + t * down.normalized()),
+                      .depth = of.depth});
+    }
+    line.front().bone = line.back().bone = cranium_body;
+    muscle.lines.push_back(std::move(line));
+  }
+  return muscle;
+}
+
+/// Force and shortening of a kind as the default muscles have them.
+void give_strength(FaceMuscle& muscle) {
+  const auto give = [&](const char* kind, double limit_N, double shortening) {
+    if (muscle.kind != kind) return;
+    if (muscle.limit_N <= 0) muscle.limit_N = limit_N;
+    if (muscle.shortening <= 0) muscle.shortening = shortening;
+  };
+  for (const Straight& of : straight_muscles()) give(of.kind, of.limit_N, of.shortening);
+  for (const Loop& of : loops()) give(of.kind, of.limit_N, of.shortening);
+  const EyeArc eye;
+  give(eye.kind, eye.limit_N, eye.shortening);
+}
+
+/// A landmark that is missing where one of the patient's own muscles begins, as the default one of
+/// its kind begins at it.
+void add_origins(const std::vector<FaceMuscle>& own, Case& patient) {
+  for (const Side& side : {Side{"left", 1}, Side{"right", -1}})
+    for (const Straight& of : straight_muscles()) {
+      const std::string name = std::string(side.name) + "_" + of.origin;
+      if (!of.on_bone || patient.landmarks.find(name) || patient.landmarks.find(of.origin))
+        continue;
+      const auto muscle = std::find_if(own.begin(), own.end(), [&](const FaceMuscle& one) {
+        return one.name == std::string(side.name) + "_" + of.kind;
+      });
+      if (muscle == own.end()) continue;
+      Vector3d origin = Vector3d::Zero();
+      for (const auto& line : muscle->lines)
+        origin += line.front().at / static_cast<double>(muscle->lines.size());
+      patient.landmarks.points[name] = origin - Vector3d(side.sign, 1, 1).cwiseProduct(of.from);
+    }
+}
+
 }  // namespace
 
 std::string missing_face_landmark(const Case& patient) {
-  for (const char* mark : {"left_malar", "right_malar", "left_cheilion", "right_cheilion",
-                           "left_orbitale", "right_orbitale", "left_soft_gonion",
-                           "right_soft_gonion", "left_mental_foramen", "right_mental_foramen",
-                           "infradentale", "soft_pogonion", "labrale_superius", "labrale_inferius"})
+  if (!patient.face_muscles.empty()) return {};
+  for (const char* mark : {"left_cheilion", "right_cheilion", "labrale_superius",
+                           "labrale_inferius", "left_malar", "right_malar"})
     if (!patient.landmarks.find(mark)) return mark;
   return {};
 }
 
 std::vector<FaceMuscle> default_face_muscles(const Case& patient) {
-  if (!missing_face_landmark(patient).empty()) return {};
   std::vector<FaceMuscle> muscles;
   for (const Side& side : {Side{"left", 1}, Side{"right", -1}}) {
-    for (const Straight& of : straight_muscles()) muscles.push_back(straight(patient, of, side));
-    FaceMuscle mentalis{.name = std::string(side.name) + "_mentalis",
-                        .kind = "mentalis",
-                        .limit_N = 9,
-                        .shortening = 0.25,
-                        .lines = {}};
-    for (const double t : {0.0, 3.0})
-      mentalis.lines.push_back(
-          line_between(landmark(patient, "infradentale") + Vector3d(side.sign * (5 + t), 1.5, -5),
-                       landmark(patient, "soft_pogonion") + Vector3d(side.sign * (6 + t), 1, 3),
-                       patient.jaw.lower_arch, 0.8, 0.3));
-    muscles.push_back(mentalis);
+    for (const Straight& of : straight_muscles())
+      if (auto muscle = straight(patient, of, side)) muscles.push_back(std::move(*muscle));
+    if (auto muscle = eye_arc(patient, {}, side)) muscles.push_back(std::move(*muscle));
   }
-  muscles.push_back(loop(patient, "orbicularis_oris_marginal", 28, 7, 4, 2, 6, 0.3));
-  muscles.push_back(loop(patient, "orbicularis_oris_peripheral", 32, 17, 8, 3, 9, 0.9));
+  for (const Loop& of : loops())
+    if (auto muscle = loop(patient, of)) muscles.push_back(std::move(*muscle));
+  return muscles;
+}
+
+std::vector<FaceMuscle> muscles_of_face(const Case& patient) {
+  std::vector<FaceMuscle> muscles = patient.face_muscles;
+  for (FaceMuscle& muscle : muscles) {
+    give_strength(muscle);
+    for (auto& line : muscle.lines)
+      for (FaceMusclePoint& point : line)
+        if (point.bone == mandible_body) point.bone = patient.jaw.lower_arch;
+  }
+  const std::size_t own = muscles.size();
+  Case marked;  // what the default muscles need
+  marked.landmarks = patient.landmarks;
+  marked.jaw = patient.jaw;
+  add_origins(muscles, marked);
+  for (FaceMuscle& other : default_face_muscles(marked))
+    if (std::none_of(muscles.begin(), muscles.begin() + static_cast<std::ptrdiff_t>(own),
+                     [&](const FaceMuscle& muscle) { return muscle.kind == other.kind; }))
+      muscles.push_back(std::move(other));
   return muscles;
 }
 

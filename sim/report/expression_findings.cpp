@@ -68,6 +68,9 @@ void add_corners(const FacePoint& left, const FacePoint& right, Collected& to) {
          100 * ((left.now - right.now).norm() / (left.rest - right.rest).norm() - 1), 20, 35, "27");
 }
 
+/// From the lower margin of the orbit to the skin of the cheek before it.
+const Vector3d below_orbit(0, -6, -12);
+
 /// What the lips show of the upper teeth.
 void add_teeth(const SmileMeasures& at_rest, const SmileMeasures& now, Collected& to) {
   constexpr const char* why = "the rise of this lip, or the height of lip and teeth at rest";
@@ -117,11 +120,12 @@ ExpressionMeasures expression_measures(const Scene& scene, const TissueState& ti
   const auto& muscles = face_muscles_of(*scene.tissue);
   Collected found{.list = {}, .smile = is_full_smile(tissue.excitation, muscles)};
   const TissueState at_rest = rest_tissue(*scene.tissue);
-  const auto point = [&](const char* name) -> std::optional<FacePoint> {
+  const auto point = [&](const std::string& name,
+                         const Vector3d& offset = Vector3d::Zero()) -> std::optional<FacePoint> {
     const auto mark = scene.patient.landmarks.find(name);
     if (!mark) return std::nullopt;
-    return FacePoint{carried_point(*scene.tissue, at_rest, *mark),
-                     carried_point(*scene.tissue, tissue, *mark)};
+    return FacePoint{carried_point(*scene.tissue, at_rest, *mark + offset),
+                     carried_point(*scene.tissue, tissue, *mark + offset)};
   };
   const auto left = point("left_cheilion"), right = point("right_cheilion");
   if (!left || !right) return measures;
@@ -139,6 +143,15 @@ ExpressionMeasures expression_measures(const Scene& scene, const TissueState& ti
   if (nose && red)
     found.add("change of the upper lip's skin, subnasale to labrale superius", "%",
               change_below_nose(red->rest.z(), red->now.z()));
+  for (const auto& [lip, mark] :
+       {std::pair("upper", "labrale_superius"), std::pair("lower", "labrale_inferius")})
+    if (const auto at = point(mark)) {
+      found.add(std::string(lip) + " lip: displacement forward", "mm", -at->moved().y());
+      found.add(std::string(lip) + " lip: displacement upward", "mm", at->moved().z());
+    }
+  for (const std::string side : {"left", "right"})
+    if (const auto cheek = point(side + "_orbitale", below_orbit))
+      found.add(side + " cheek below the orbit: displacement upward", "mm", cheek->moved().z());
   const auto length = face_muscle_lengths(*scene.tissue, tissue),
              rest_length = face_muscle_lengths(*scene.tissue, at_rest);
   for (std::size_t m = 0; m < muscles.size(); ++m)

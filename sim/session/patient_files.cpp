@@ -26,6 +26,9 @@ std::string first_line(const fs::path& file) {
   return {};
 }
 
+/// Whether a table of muscles is one of the face: a row for each point.
+bool is_of_the_face(const fs::path& file) { return first_line(file).starts_with("muscle,side"); }
+
 /// The kind of a JSON file by the format that its beginning states.
 FileKind json_kind(const fs::path& file) {
   std::ifstream stream(file);
@@ -78,6 +81,7 @@ FileKind kind_of(const fs::path& path) {
     if (const FileKind kind = json_kind(path); kind != FileKind::unknown) return kind;
   if (ending == ".csv") {
     const std::string header = first_line(path);
+    if (is_of_the_face(path)) return FileKind::muscles;
     if (header.find("max_force_n") != std::string::npos) return FileKind::muscles;
     if (header.starts_with("name") || header.find("x_mm") == 0) return FileKind::landmarks;
     const bool has_place = header.find('x') != std::string::npos;
@@ -132,7 +136,7 @@ Case import_files(const std::vector<FileRole>& files, const std::string& units,
     if (one.role == "landmarks")
       request.landmarks = one.file;
     else if (one.role == "muscles")
-      request.muscles = one.file;
+      (is_of_the_face(one.file) ? request.face_muscles : request.muscles) = one.file;
     else if (const auto role = role_named(one.role))
       request.files.push_back({*role, one.file});
   }

@@ -23,7 +23,7 @@ Scene make_scene(Case patient, const SimulatorSettings& settings, const Progress
     report(progress, "building the soft tissue", 0.3);
     TissueSettings of_tissue = settings.tissue_model;
     of_tissue.threads = settings.threads;
-    of_tissue.face_muscles = default_face_muscles(patient);
+    of_tissue.face_muscles = muscles_of_face(patient);
     tissue = build_tissue(patient, of_tissue, progress);
   }
   report(progress, "building the soft tissue", 1.0);
@@ -70,7 +70,7 @@ Scene edited_scene(const Scene& before, Case patient, const SimulatorSettings& s
     report(progress, "building the soft tissue", 0.3);
     TissueSettings of_tissue = settings.tissue_model;
     of_tissue.threads = settings.threads;
-    of_tissue.face_muscles = default_face_muscles(patient);
+    of_tissue.face_muscles = muscles_of_face(patient);
     const bool unchanged = before.tissue && same_for_tissue(before.patient, patient);
     tissue = unchanged ? before.tissue : build_tissue(patient, of_tissue, progress);
   }

@@ -64,6 +64,7 @@ InPrism locate(const Nodes& x, const std::array<int, 6>& p, const Vector3d& at, 
 struct AtColumn {
   Eigen::Vector3i column = Eigen::Vector3i::Zero();
   std::array<double, 3> weight{};
+  double depth = 0;  // of the point, 0 to 1
 };
 
 AtColumn column_at(const TissueMesh& mesh, const Vector3d& at) {
@@ -88,6 +89,7 @@ AtColumn column_at(const TissueMesh& mesh, const Vector3d& at) {
                               at, 0, 1);
     if (in.distance < best.distance) best = in, found.column = t;
   }
+  found.depth = best.t;
   found.weight = {1 - best.u - best.v, best.u, best.v};
   return found;
 }
@@ -108,9 +110,10 @@ void add_column(const TissueMesh& mesh, int column, double depth, double weight,
 TissueMuscles::Point in_tissue(const TissueMesh& mesh, const FaceMusclePoint& p) {
   TissueMuscles::Point point;
   const AtColumn at = column_at(mesh, p.at);
+  const double depth = p.depth.value_or(at.depth);
   if (p.spread_mm <= 0) {
     for (std::size_t k = 0; k < 3; ++k)
-      add_column(mesh, at.column[static_cast<int>(k)], p.depth, at.weight[k], point.carried);
+      add_column(mesh, at.column[static_cast<int>(k)], depth, at.weight[k], point.carried);
   } else {
     Vector3d skin = Vector3d::Zero();
     for (int k = 0; k < 3; ++k)
@@ -124,9 +127,8 @@ TissueMuscles::Point in_tissue(const TissueMesh& mesh, const FaceMusclePoint& p)
       columns.emplace_back(c, std::exp(-0.5 * far * far));
       sum += columns.back().second;
     }
-    if (columns.size() < 3) return in_tissue(mesh, {.at = p.at, .depth = p.depth});
-    for (const auto& [c, weight] : columns)
-      add_column(mesh, c, p.depth, weight / sum, point.carried);
+    if (columns.size() < 3) return in_tissue(mesh, {.at = p.at, .depth = depth});
+    for (const auto& [c, weight] : columns) add_column(mesh, c, depth, weight / sum, point.carried);
   }
   point.rest = point.carried.at(mesh.rest);
   return point;
@@ -209,9 +211,13 @@ std::vector<MuscleLine> muscle_pull(const TissueMuscles& muscles,
     if (a <= 0) continue;
     const FaceMuscle& muscle = muscles.muscles[static_cast<std::size_t>(of.muscle)];
     MuscleLine line = line_at(of, X_CB);
-    line.shortest = (1 - a * muscle.shortening) * of.rest_mm;
-    line.stiffness = of.limit_N / (full_over * of.rest_mm);
     line.limit = a * of.limit_N;
+    if (muscle.law == FaceMuscleLaw::hill) {
+      line.optimal = of.rest_mm;
+    } else {
+      line.shortest = (1 - a * muscle.shortening) * of.rest_mm;
+      line.stiffness = of.limit_N / (full_over * of.rest_mm);
+    }
     pull.push_back(std::move(line));
   }
   return pull;

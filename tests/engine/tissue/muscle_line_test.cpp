@@ -33,6 +33,65 @@ TEST(MuscleLine, PullsUpToItsLimitAndNeverPushes) {
   EXPECT_EQ(muscle.law(80).energy, 0);
 }
 
+/// A bent line whose points lie between nodes, with either law.
+MuscleLine bent_line(bool hill) {
+  MuscleLine muscle;
+  muscle.points = {{.fixed = {0, 0, 12}},
+                   {.node = {0, 1}, .weight = {0.3, 0.7}},
+                   {.node = {1, 2, 3}, .weight = {0.2, 0.5, 0.3}},
+                   {.node = {3}, .weight = {1}}};
+  muscle.limit = 4;
+  if (hill)
+    muscle.optimal = 48;
+  else
+    muscle.shortest = 34, muscle.stiffness = 0.3;
+  return muscle;
+}
+
+TEST(MuscleLine, GradientAndCurvatureAreThoseOfTheEnergy) {
+  const Points x{{6, 1, 9}, {14, -2, 5}, {27, 3, 6}, {39, 5, -3}};
+  const Points d{{0.3, -0.6, 0.2}, {-0.5, 0.4, 0.9}, {0.8, 0.1, -0.3}, {-0.2, 0.7, 0.6}};
+  for (const bool hill : {false, true}) {
+    const MuscleLine muscle = bent_line(hill);
+    ASSERT_GT(muscle.law(muscle.length(x)).tension, 0.5) << hill;
+    const auto along = [&](double s) {
+      Points moved = x;
+      for (std::size_t i = 0; i < x.size(); ++i) moved[i] += s * d[i];
+      return moved;
+    };
+    const auto slope = [&](double s) {
+      double sum = 0;
+      const double energy = muscle.energy_and_gradient(
+          along(s), [&](int node, const Vector3d& g) { sum += g.dot(d[node]); });
+      EXPECT_EQ(energy, muscle.energy(along(s)));
+      return sum;
+    };
+    const double h = 1e-4;
+    const double by_energy = (muscle.energy(along(h)) - muscle.energy(along(-h))) / (2 * h);
+    EXPECT_NEAR(slope(0), by_energy, 1e-6) << hill;
+    const double by_slope = (slope(h) - slope(-h)) / (2 * h);
+    EXPECT_NEAR(muscle.curvature(x, d), by_slope, 1e-6) << hill;
+    EXPECT_GT(std::abs(by_slope), 0.01) << hill;
+  }
+}
+
+TEST(MuscleLine, HillsTensionIsTheLimitAtTheOptimalLengthAndFallsOff) {
+  MuscleLine muscle;
+  muscle.optimal = 50;
+  muscle.limit = 3;
+  EXPECT_DOUBLE_EQ(muscle.law(50).tension, 3);
+  EXPECT_NEAR(muscle.law(35).tension, 3 * std::exp(-0.09 / 0.45), 1e-12);
+  EXPECT_NEAR(muscle.law(65).tension, muscle.law(35).tension, 1e-12);
+  for (double length = 10; length < 90; length += 5) {
+    const double h = 1e-3;
+    EXPECT_NEAR((muscle.law(length + h).energy - muscle.law(length - h).energy) / (2 * h),
+                muscle.law(length).tension, 1e-6);
+    EXPECT_NEAR((muscle.law(length + h).tension - muscle.law(length - h).tension) / (2 * h),
+                muscle.law(length).rise, 1e-6);
+  }
+  EXPECT_NEAR(muscle.law(0).energy, 0, 1e-12);
+}
+
 /// A block of tissue on bone, with a muscle from a fixed place to its free skin.
 struct PulledBlock {
   static constexpr int side = 7, sheets = 3;

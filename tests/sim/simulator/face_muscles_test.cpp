@@ -1,14 +1,18 @@
 // Muscles of the face in the built-in patient's tissue.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <filesystem>
 
+#include "sim/case/case_io.h"
 #include "sim/muscles/default_face_muscles.h"
 #include "sim/muscles/expression.h"
 #include "sim/tissue/lips.h"
 #include "sim/tissue/tissue.h"
 #include "tests/support/builtin.h"
 #include "tests/support/jaw_pose.h"
+#include "tests/support/real_cases.h"
 
 namespace condyle {
 namespace {
@@ -16,14 +20,15 @@ namespace {
 using Eigen::Vector3d;
 
 struct MuscledFace {
-  Case patient = test::builtin();
+  Case patient;
   std::shared_ptr<const TissueModel> model;
   std::vector<FaceMuscle> muscles;
 
-  explicit MuscledFace(bool with_muscles = true) {
+  explicit MuscledFace(bool with_muscles = true, Case of = test::builtin())
+      : patient(std::move(of)) {
     part_lips(patient);
     TissueSettings settings;
-    if (with_muscles) settings.face_muscles = default_face_muscles(patient);
+    if (with_muscles) settings.face_muscles = muscles_of_face(patient);
     muscles = settings.face_muscles;
     model = build_tissue(patient, settings);
   }
@@ -69,9 +74,7 @@ TEST(FaceMuscles, WithoutExcitationChangeNothingBitForBit) {
 }
 
 // Source of the ranges: measured and simulated smiles, see expression_findings.cpp.
-TEST(FaceMuscles, ASmileIsThatOfHealthyPeople) {
-  const MuscledFace& face = muscled_face();
-  const TissueState smile = state_of(face, "smile");
+void expect_smile(const MuscledFace& face, const TissueState& smile) {
   EXPECT_LT(smile.penetration_mm, 0.2);
   for (const auto& [mark, sign] :
        {std::pair("left_cheilion", 1), std::pair("right_cheilion", -1)}) {
@@ -83,6 +86,13 @@ TEST(FaceMuscles, ASmileIsThatOfHealthyPeople) {
     EXPECT_LT(angle, 60) << mark;
     EXPECT_GT(moved.y(), 0) << mark << ": back along the teeth";
   }
+  const double wider =
+      (face.moved(smile, "left_cheilion") - face.moved(smile, "right_cheilion")).x() /
+      (*face.patient.landmarks.find("left_cheilion") -
+       *face.patient.landmarks.find("right_cheilion"))
+          .norm();
+  EXPECT_GT(wider, 0.2);
+  EXPECT_LT(wider, 0.35);
   const auto length = face_muscle_lengths(*face.model, smile),
              rest = face_muscle_lengths(*face.model, rest_tissue(*face.model));
   int zygomatic = 0;
@@ -93,6 +103,50 @@ TEST(FaceMuscles, ASmileIsThatOfHealthyPeople) {
       EXPECT_LT(length[m] / rest[m], 0.89);
     }
   EXPECT_EQ(zygomatic, 2);
+}
+
+TEST(FaceMuscles, ASmileIsThatOfHealthyPeople) {
+  expect_smile(muscled_face(), state_of(muscled_face(), "smile"));
+}
+
+TEST(FaceMuscles, ASmileRaisesTheCheeks) {
+  const MuscledFace& face = muscled_face();
+  const TissueState smile = state_of(face, "smile");
+  for (const char* side : {"left", "right"}) {
+    const Vector3d at = *face.patient.landmarks.find(std::string(side) + "_orbitale") +
+                        Vector3d(0, -6, -12);  // the skin before it
+    const double up = (carried_point(*face.model, smile, at) -
+                       carried_point(*face.model, rest_tissue(*face.model), at))
+                          .z();
+    EXPECT_GT(up, 1) << side;
+    EXPECT_LT(up, 5) << side;
+  }
+}
+
+TEST(FaceMuscles, AKissNarrowsTheMouthAndBringsTheLipsForward) {
+  const MuscledFace& face = muscled_face();
+  const TissueState kiss = state_of(face, "kiss");
+  EXPECT_TRUE(kiss.converged);
+  EXPECT_LT(kiss.penetration_mm, 0.2);
+  EXPECT_LT(face.moved(kiss, "left_cheilion").x(), -2);
+  EXPECT_GT(face.moved(kiss, "right_cheilion").x(), 2);
+  EXPECT_LT(face.moved(kiss, "labrale_superius").y(), -1.5);
+  EXPECT_LT(face.moved(kiss, "labrale_inferius").y(), -1.5);
+}
+
+/// A measured patient's own muscles, with the strengths of the built-in patient's.
+TEST(FaceMuscles, AMeasuredPatientSmilesWithHisOwn) {
+  const auto folder = test::real_data() / "case-badin";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "real anatomy absent";
+  const MuscledFace face(true,
+                         import_meshes({.files = {{Role::maxilla, folder / "maxilla_capped.ply"},
+                                                  {Role::mandible, folder / "mandible.ply"},
+                                                  {Role::face, folder / "face_skin.ply"}},
+                                        .landmarks = folder / "markers.csv",
+                                        .name = "badin",
+                                        .face_muscles = folder / "face_muscles.csv"}));
+  for (const FaceMuscle& own : face.patient.face_muscles) EXPECT_EQ(own.limit_N, 0) << own.name;
+  expect_smile(face, state_of(face, "smile"));
 }
 
 TEST(FaceMuscles, OneSideMovesThatCornerOnly) {
@@ -116,9 +170,28 @@ TEST(FaceMuscles, AreBitIdenticalForOneAndTwoThreads) {
 
 TEST(FaceMuscles, AreLeftOutWithoutTheirLandmarks) {
   Case patient = test::builtin();
+  const auto kinds = [&](const std::string& kind) {
+    const auto muscles = muscles_of_face(patient);
+    return std::count_if(muscles.begin(), muscles.end(),
+                         [&](const FaceMuscle& muscle) { return muscle.kind == kind; });
+  };
+  EXPECT_EQ(kinds("zygomaticus_minor"), 2);
   patient.landmarks.points.erase("left_malar");
   EXPECT_EQ(missing_face_landmark(patient), "left_malar");
-  EXPECT_TRUE(default_face_muscles(patient).empty());
+  EXPECT_EQ(kinds("zygomaticus_minor"), 1);
+  EXPECT_EQ(kinds("risorius"), 2);
+  // Where the patient's own zygomaticus major begins, the landmark is known again.
+  const Vector3d origin(52, -69.6, -5.6);
+  patient.face_muscles = {
+      {.name = "left_zygomaticus_major",
+       .kind = "zygomaticus_major",
+       .limit_N = 0,
+       .shortening = 0,
+       .lines = {{{.at = origin, .bone = cranium_body}, {.at = {24.5, -92.1, -50.1}}}}}};
+  EXPECT_EQ(missing_face_landmark(patient), "");
+  EXPECT_EQ(kinds("zygomaticus_minor"), 2);
+  EXPECT_EQ(kinds("zygomaticus_major"), 1) << "own muscles replace default ones of their kind";
+  EXPECT_GT(muscles_of_face(patient).front().limit_N, 0) << "that of its kind";
 }
 
 }  // namespace

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "sim/case/face_muscle.h"
+
+namespace condyle {
+
+/// A table of the muscles of facial expression, one row for each point of a fibre: CSV with the
+/// columns muscle, side (left, right, both), fibre, point, x_mm, y_mm, z_mm; optionally body
+/// (cranium, mandible; tissue, or empty), depth (0 at the skin to 1 at the inner side of the soft
+/// tissue; empty: where the point lies), spread_mm (0), max_force_N and shortening of the whole
+/// muscle (empty: those of its kind), law (bounded, hill). A muscle is a kind,
+/// "zygomaticus_major", or an abbreviation of one, "ZYG". Points are as given in the file.
+struct FaceMuscleTable {
+  std::vector<FaceMuscle> muscles;
+  bool has_bodies = false;  // else nothing is known of the ends
+};
+
+/// throws: InputError with file, line, column and value.
+FaceMuscleTable read_face_muscles(const std::filesystem::path& file);
+
+/// The muscles as CSV text with exact round trip.
+std::string face_muscles_csv(const std::vector<FaceMuscle>& muscles);
+
+/// Whether force and shortening of this kind are known.
+bool is_face_muscle_kind(const std::string& kind);
+
+/// "left", "right", "both" by a muscle's name.
+std::string face_muscle_side(const FaceMuscle& muscle);
+
+}  // namespace condyle
