@@ -380,8 +380,15 @@ std::vector<Vector3f> places_now(const MouthLining& lining, std::span<const Vect
   for (std::size_t v = 0; v < now.size(); ++v) {
     const Vector3f with_jaw = (X_CM * lining.rest[v].cast<double>()).cast<float>();
     now[v] = lining.rest[v] + lining.jaw[v] * (with_jaw - lining.rest[v]);
-    if (v < n) rim_shift[v] = rim[v] - now[v];
-    now[v] = v < n ? rim[v] : Vector3f(now[v] + lining.lip[v] * rim_shift[v % n]);
+    if (v < n) {
+      rim_shift[v] = rim[v] - now[v];
+      now[v] = rim[v];
+      continue;
+    }
+    // Lips that come forward leave the lining behind them on the arches; it would pierce the skin.
+    Vector3f shift = rim_shift[v % n];
+    shift.y() = std::max(0.0f, shift.y());
+    now[v] += lining.lip[v] * shift;
   }
   return now;
 }
