@@ -51,6 +51,27 @@ TEST(MouthLining, ClosesTheFaceAtTheRimAndNowhereElse) {
   EXPECT_TRUE(is_closed_surface(fanned));
 }
 
+TEST(MouthLining, StaysBehindLipsThatComeForwardAndYieldsToThoseThatGoBack) {
+  const auto parts = head_with_mouth();
+  const auto lining = line_mouth(parts);
+  ASSERT_TRUE(lining);
+  const std::size_t n = lining->rim.size();
+  for (const float back : {-4.0f, 4.0f}) {
+    std::vector<Eigen::Vector3f> rim(lining->rest.begin(),
+                                     lining->rest.begin() + std::ssize(lining->rim));
+    for (auto& p : rim) p.y() += back;
+    const auto now = places_now(*lining, rim, {});
+    float most = 0;
+    for (std::size_t v = n; v < now.size(); ++v)
+      most = std::max(most, std::abs(now[v].y() - lining->rest[v].y()));
+    if (back < 0) {
+      EXPECT_LT(most, 1e-4f);
+    } else {
+      EXPECT_GT(most, 0.5f);
+    }
+  }
+}
+
 TEST(MouthLining, FollowsTheLipsInFrontAndItsJawBehindThem) {
   const auto parts = head_with_mouth();
   const auto lining = line_mouth(parts);
