@@ -229,8 +229,9 @@ void join_loops(std::vector<FaceMuscle>& muscles) {
   std::map<std::string, std::vector<Fibre>> of_kind;
   for (const FaceMuscle& muscle : muscles)
     for (const Fibre& fibre : muscle.lines) of_kind[muscle.kind].push_back(fibre);
-  for (auto& [kind, fibres] : of_kind) {
-    auto loops = loops_of(std::move(fibres));
+  for (auto& entry : of_kind) {
+    const std::string& kind = entry.first;
+    auto loops = loops_of(std::move(entry.second));
     if (loops.empty()) continue;
     const auto first = std::find_if(muscles.begin(), muscles.end(),
                                     [&](const FaceMuscle& m) { return m.kind == kind; });
