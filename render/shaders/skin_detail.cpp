@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -12,26 +13,45 @@ namespace {
 
 constexpr int detail_side = SkinDetail::side;
 
-/// 0 to 1 for a cell of a lattice with period `cells`.
-float random_of(Eigen::Vector3i cell, int cells, int which) {
-  for (int k = 0; k < 3; ++k) cell[k] = ((cell[k] % cells) + cells) % cells;
-  const int key[4] = {cell.x(), cell.y(), cell.z(), which};
-  return static_cast<float>(hash_bytes(key, sizeof key) >> 40) / static_cast<float>(1 << 24);
-}
+/// A random point in each cell of a lattice with period `cells`, in cells from its corner.
+class CellPoints {
+ public:
+  explicit CellPoints(int cells) : cells_(cells) {
+    for (int z = 0; z < cells; ++z)
+      for (int y = 0; y < cells; ++y)
+        for (int x = 0; x < cells; ++x)
+          points_.emplace_back(random_of({x, y, z, 0}), random_of({x, y, z, 1}),
+                               random_of({x, y, z, 2}));
+  }
 
-/// Cellular pattern of skin: flat cells with creases between them, at a position in cells. source:
-/// Worley, A cellular texture basis function, 1996
-float cells_height(const Eigen::Vector3f& place, int cells) {
+  int cells() const { return cells_; }
+  const Eigen::Vector3f& in(const Eigen::Vector3i& cell) const {
+    const auto wrap = [&](int i) { return static_cast<std::size_t>((i + cells_) % cells_); };
+    return points_[(wrap(cell.z()) * cells_ + wrap(cell.y())) * cells_ + wrap(cell.x())];
+  }
+
+ private:
+  /// 0 to 1
+  static float random_of(const std::array<int, 4>& key) {
+    return static_cast<float>(hash_bytes(key.data(), sizeof key) >> 40) /
+           static_cast<float>(1 << 24);
+  }
+
+  int cells_;
+  std::vector<Eigen::Vector3f> points_;
+};
+
+/// Cellular pattern of skin: flat cells with creases between them, at a position from 0 to 1 of the
+/// period. source: Worley, A cellular texture basis function, 1996
+float cells_height(const Eigen::Vector3f& at, const CellPoints& points) {
+  const Eigen::Vector3f place = points.cells() * at;
   const Eigen::Vector3i base = place.array().floor().cast<int>();
   float nearest = std::numeric_limits<float>::infinity(), second = nearest;
   for (int dz = -1; dz <= 1; ++dz)
     for (int dy = -1; dy <= 1; ++dy)
       for (int dx = -1; dx <= 1; ++dx) {
         const Eigen::Vector3i cell = base + Eigen::Vector3i(dx, dy, dz);
-        const Eigen::Vector3f middle =
-            cell.cast<float>() + Eigen::Vector3f(random_of(cell, cells, 0),
-                                                 random_of(cell, cells, 1),
-                                                 random_of(cell, cells, 2));
+        const Eigen::Vector3f middle = cell.cast<float>() + points.in(cell);
         const float away = (middle - place).norm();
         if (away < nearest) {
           second = nearest;
@@ -45,7 +65,7 @@ float cells_height(const Eigen::Vector3f& place, int cells) {
 
 SkinDetail make_skin_detail() {
   // Two sizes of cells, neither a multiple of the other.
-  constexpr int large = 17, small = 26;
+  const CellPoints large(17), small(26);
   std::vector<float> height(std::size_t{detail_side} * detail_side * detail_side);
   const auto at = [](int x, int y, int z) {
     const auto wrap = [](int i) {
@@ -60,8 +80,7 @@ SkinDetail make_skin_detail() {
         const Eigen::Vector3f place =
             Eigen::Vector3f(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z)) /
             detail_side;
-        const float h =
-            0.6f * cells_height(large * place, large) + 0.4f * cells_height(small * place, small);
+        const float h = 0.6f * cells_height(place, large) + 0.4f * cells_height(place, small);
         height[at(x, y, z)] = h;
         mean += h / static_cast<float>(height.size());
       }
