@@ -10,6 +10,7 @@
 #include "engine/collide/distance_field.h"
 #include "engine/core/error.h"
 #include "engine/core/files.h"
+#include "engine/core/user_cache.h"
 #include "render/gl/gl_context.h"
 #include "render/recording/render_metadata.h"
 #include "sim/motion/recording.h"
@@ -150,7 +151,7 @@ int run_occlude(const OccludeOptions& options, const CommonOptions& common) {
   std::optional<Bite> before;
   OcclusionSettings settings;
   settings.film_mm = options.film_mm;
-  settings.cache = field_cache_folder();
+  settings.cache = user_cache_folder();
   settings.threads = common.threads;
   if (plan) {
     before = BiteFinder(patient, settings, bar.callback())

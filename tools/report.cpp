@@ -11,6 +11,7 @@
 #include "engine/collide/distance_field.h"
 #include "engine/core/error.h"
 #include "engine/core/files.h"
+#include "engine/core/user_cache.h"
 #include "render/gl/gl_context.h"
 #include "render/image/image.h"
 #include "render/plan/face_pictures.h"
@@ -91,7 +92,7 @@ std::optional<Bite> planned_bite(const Case& after, const CommonOptions& common,
   if (!after.has_both_arches()) return std::nullopt;
   OcclusionSettings settings;
   settings.threads = common.threads;
-  settings.cache = field_cache_folder();
+  settings.cache = user_cache_folder();
   return BiteFinder(after, settings, progress).find({}, progress);
 }
 

@@ -190,7 +190,4 @@ DistanceField cached_piece_field(const std::filesystem::path& cache, const TriMe
                                  const TriMesh& uncut, const DistanceField& uncut_field,
                                  int threads = 1, const Progress& progress = {});
 
-/// $XDG_CACHE_HOME/condyle, else ~/.cache/condyle; empty when neither is set.
-std::filesystem::path field_cache_folder();
-
 }  // namespace condyle

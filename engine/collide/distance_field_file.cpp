@@ -1,6 +1,5 @@
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <functional>
@@ -8,6 +7,7 @@
 #include "engine/collide/distance_field.h"
 #include "engine/core/files.h"
 #include "engine/core/hash.h"
+#include "engine/core/user_cache.h"
 
 namespace condyle {
 namespace {
@@ -15,20 +15,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uint64_t format_version = 2;
-
-/// Eight bytes at a time: the checksum of some ten megabytes should not take longer than reading
-/// them.
-std::uint64_t seal_of(std::string_view bytes) {
-  std::uint64_t h = hash_start;
-  std::size_t i = 0;
-  for (; i + 8 <= bytes.size(); i += 8) {
-    std::uint64_t word;
-    std::memcpy(&word, bytes.data() + i, 8);
-    h = (h ^ word) * 1099511628211ull;
-    h ^= h >> 29;
-  }
-  return hash_bytes(bytes.data() + i, bytes.size() - i, h);
-}
 
 template <class T>
 void append(std::string& bytes, const T* values, std::size_t count) {
@@ -89,7 +75,7 @@ std::string DistanceField::to_bytes(std::uint64_t name) const {
   append(bytes, brick_.data(), brick_.size());
   append(bytes, bound_.data(), bound_.size());
   for (const Brick& brick : bricks_) append(bytes, brick.value.data(), brick.value.size());
-  const std::uint64_t seal = seal_of(bytes);
+  const std::uint64_t seal = word_hash(bytes.data(), bytes.size());
   append(bytes, &seal, 1);
   return bytes;
 }
@@ -100,7 +86,7 @@ std::optional<DistanceField> DistanceField::from_bytes(std::string_view bytes, s
   if (bytes.size() < sizeof seal) return std::nullopt;
   std::memcpy(&seal, bytes.data() + bytes.size() - sizeof seal, sizeof seal);
   bytes.remove_suffix(sizeof seal);
-  if (seal_of(bytes) != seal) return std::nullopt;
+  if (word_hash(bytes.data(), bytes.size()) != seal) return std::nullopt;
 
   DistanceField field;
   field.settings_ = settings;
@@ -146,17 +132,6 @@ DistanceField cached_piece_field(const fs::path& cache, const TriMesh& piece, co
       hash_values(std::span<const std::uint64_t>(&grid, 1), name_of(piece, settings));
   return stored_field(cache, name, settings,
                       [&] { return DistanceField(piece, uncut, uncut_field, threads, progress); });
-}
-
-fs::path field_cache_folder() {
-  const auto absolute = [](const char* variable) {
-    const char* value = std::getenv(variable);
-    const fs::path path = value ? value : "";
-    return path.is_absolute() ? path : fs::path();
-  };
-  if (const auto cache = absolute("XDG_CACHE_HOME"); !cache.empty()) return cache / "condyle";
-  if (const auto home = absolute("HOME"); !home.empty()) return home / ".cache" / "condyle";
-  return {};
 }
 
 }  // namespace condyle

@@ -4,6 +4,7 @@
 
 #include "engine/collide/distance_field.h"
 #include "engine/core/error.h"
+#include "engine/core/user_cache.h"
 #include "sim/operated/segment_bite.h"
 #include "sim/operation/edit_cut.h"
 #include "sim/operation/move_collision.h"
@@ -216,7 +217,7 @@ void PlanSession::start(Change change, const request::EditPlan& request) {
     if (const auto* bite = std::get_if<plan_edit::Occlude>(&request.edit)) {
       OcclusionSettings settings;
       settings.threads = threads;
-      settings.cache = field_cache_folder();
+      settings.cache = user_cache_folder();
       const SegmentBite found = find_segment_bite(*uncut, plan, bite->segment, settings, progress);
       if (!found.bite.stable)
         throw InputError(bite->segment + " is not placed: no stable bite, " +

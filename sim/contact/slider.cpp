@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/core/user_cache.h"
 #include "sim/contact/sliding_settings.h"
 
 namespace condyle {
@@ -54,7 +55,7 @@ Slider::Slider(const Case& patient, const ContactModel::State& state, Slider* ea
     }
     surface.settings.samples.spacing_mm =
         is_teeth(part.role) ? Resolution::tooth_sample_mm : Resolution::bone_sample_mm;
-    surface.settings.cache = field_cache_folder();
+    surface.settings.cache = user_cache_folder();
     surface.coverage = field_coverage(collider->surface.box(), field.region);
     surfaces_.push_back(std::move(surface));
   }

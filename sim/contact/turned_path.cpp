@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "engine/collide/path_search.h"
+#include "engine/core/user_cache.h"
 #include "engine/mesh/measure.h"
 #include "sim/contact/contact.h"
 #include "sim/contact/sliding_settings.h"
@@ -70,7 +71,7 @@ Surfaces surfaces_near(const Case& patient, const std::vector<BodyId>& graft, do
     if (!moves(part)) settings.field.region = region;
     settings.samples.spacing_mm = is_teeth(part.role) ? SlidingResolution::tooth_sample_mm
                                                       : SlidingResolution::bone_sample_mm;
-    settings.cache = field_cache_folder();
+    settings.cache = user_cache_folder();
     (moves(part) ? near.moving : near.fixed)
         .push_back(std::make_shared<const ContactSurface>(
             make_contact_surface(part.mesh, settings, threads)));

@@ -2,6 +2,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/units.h"
+#include "engine/core/user_cache.h"
 #include "engine/mesh/measure.h"
 #include "sim/dynamics/body_mass.h"
 #include "sim/motion/condylar_kinematics.h"
@@ -87,7 +88,7 @@ std::array<Surfaces, 2> make_bones(const Case& patient, const BodyPoses& given, 
       ContactSurfaceSettings how;
       how.field.spacing_mm = spacing_mm;
       how.samples.spacing_mm = sample_mm;
-      how.cache = field_cache_folder();
+      how.cache = user_cache_folder();
       Box& region = how.field.region.emplace(boxes[1 - side]);
       if (region.empty()) continue;
       region.low.array() -= reach_mm;
@@ -148,7 +149,7 @@ JawWorld make_jaw_world(const Case& patient, const JawWorldSettings& settings, i
   if (settings.teeth) {
     const BitingSurfaces bite = biting_surfaces(patient);
     ContactSurfaceSettings how;
-    how.cache = field_cache_folder();
+    how.cache = user_cache_folder();
     if (settings.worn_crowns) how.field.band_mm = worn_band_mm;
     const auto surface = [&](const TriMesh& mesh, const std::optional<Box>& crowns) {
       how.field.region = crowns;

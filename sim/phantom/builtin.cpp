@@ -3,6 +3,7 @@
 #include <cstdlib>
 #include <optional>
 
+#include "engine/core/user_cache.h"
 #include "sim/phantom/cache.h"
 #include "sim/phantom/mix_hash.h"
 #include "sim/phantom/phantom.h"
@@ -39,24 +40,12 @@ std::uint64_t recipe_key() {
   return hash;
 }
 
-/// The user's cache folder of this program, if the environment defines one.
-std::optional<fs::path> cache_folder() {
-  const auto absolute = [](const char* name) -> std::optional<fs::path> {
-    const char* value = std::getenv(name);
-    if (value == nullptr || !fs::path(value).is_absolute()) return std::nullopt;
-    return fs::path(value);
-  };
-  if (const auto cache = absolute("XDG_CACHE_HOME")) return *cache / "condyle";
-  if (const auto home = absolute("HOME")) return *home / ".cache" / "condyle";
-  return std::nullopt;
-}
-
 }  // namespace
 
 Case builtin_patient(const Progress& progress) {
-  const auto cache = cache_folder();
-  if (!cache) return build_phantom(progress);
-  return cached_case(*cache, fmt::format("built-in-patient-{:016x}", recipe_key()),
+  const fs::path cache = user_cache_folder();
+  if (cache.empty()) return build_phantom(progress);
+  return cached_case(cache, fmt::format("built-in-patient-{:016x}", recipe_key()),
                      [&] { return build_phantom(progress); });
 }
 

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "engine/collide/distance_field.h"
+#include "engine/core/user_cache.h"
 #include "sim/phantom/phantom.h"
 #include "sim/prediction/predicted_landmarks.h"
 #include "tools/bite_picture.h"
@@ -28,7 +29,7 @@ ClassIiiPlan make_class_iii_plan(int threads, const Progress& progress) {
   plan = with_cut(made.patient, std::move(plan), {.osteotomy = "sagittal_split"});
   OcclusionSettings settings;
   settings.threads = threads;
-  settings.cache = field_cache_folder();
+  settings.cache = user_cache_folder();
   made.bite = find_segment_bite(made.patient, plan, "distal", settings, progress);
   made.plan = with_segment_bite(std::move(plan), "distal", made.bite);
   const Eigen::Vector3d edge = made.patient.landmarks.points.at("lower_incisal_point");

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "engine/collide/distance_field.h"
+#include "engine/core/user_cache.h"
 #include "sim/operated/segment_bite.h"
 #include "sim/plan/plan_file.h"
 #include "tools/common.h"
@@ -34,7 +35,7 @@ int run_plan_occlude(const PlanOccludeOptions& options, const CommonOptions& com
   const Case patient = open_planned(options.patient, plan, common);
   OcclusionSettings settings;
   settings.threads = common.threads;
-  settings.cache = field_cache_folder();
+  settings.cache = user_cache_folder();
   ProgressBar bar(common);
   const SegmentBite found =
       find_segment_bite(patient, plan, options.segment, settings, bar.callback(),
