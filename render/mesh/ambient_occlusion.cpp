@@ -7,7 +7,9 @@
 #include <limits>
 #include <numbers>
 
+#include "engine/core/archive.h"
 #include "engine/core/parallel.h"
+#include "engine/core/user_cache.h"
 
 namespace condyle {
 namespace {
@@ -171,6 +173,39 @@ std::vector<Occlusion> bake_occlusion(std::span<const OcclusionSurface> surfaces
     smooth(result[s].together, surfaces[s].triangles);
   }
   return result;
+}
+
+template <class Archive>
+void fields(Archive& archive, Occlusion& occlusion) {
+  archive(occlusion.alone, occlusion.together);
+}
+
+std::vector<Occlusion> stored_occlusion(const std::filesystem::path& cache,
+                                        std::span<const OcclusionSurface> surfaces, int directions,
+                                        int threads) {
+  constexpr std::size_t most_files = 24;
+  const ResultCache results(cache, "occlusion", most_files);
+  std::uint64_t inputs = word_hash(&directions, sizeof directions);
+  for (const auto& surface : surfaces) {
+    const std::size_t numbers[] = {surface.vertices.size(), surface.triangles.size(),
+                                   static_cast<std::size_t>(surface.layer), surface.alone,
+                                   surface.together};
+    inputs = word_hash(numbers, sizeof numbers, inputs);
+    inputs = word_hash(surface.vertices.data(), surface.vertices.size_bytes(), inputs);
+    inputs = word_hash(surface.normals.data(), surface.normals.size_bytes(), inputs);
+    inputs = word_hash(surface.triangles.data(), surface.triangles.size_bytes(), inputs);
+  }
+  if (const auto bytes = results.read(inputs)) {
+    std::vector<Occlusion> stored;
+    ArchiveReader reader(*bytes);
+    reader(stored);
+    if (reader.complete() && stored.size() == surfaces.size()) return stored;
+  }
+  auto made = bake_occlusion(surfaces, directions, threads);
+  ArchiveWriter writer;
+  writer(made);
+  results.write(inputs, writer.take());
+  return made;
 }
 
 }  // namespace condyle

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <filesystem>
 #include <span>
 #include <vector>
 
@@ -26,5 +27,11 @@ struct Occlusion {
 /// cores. Bit-identical for any number of threads.
 std::vector<Occlusion> bake_occlusion(std::span<const OcclusionSurface> surfaces, int directions,
                                       int threads);
+
+/// The same, kept in a folder; computed again where the file is absent or damaged. Nothing is kept
+/// in an empty folder.
+std::vector<Occlusion> stored_occlusion(const std::filesystem::path& cache,
+                                        std::span<const OcclusionSurface> surfaces, int directions,
+                                        int threads);
 
 }  // namespace condyle

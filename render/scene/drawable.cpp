@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "engine/core/hash.h"
+#include "engine/core/user_cache.h"
 #include "engine/mesh/triangle_tree.h"
 #include "render/face/shade_layers.h"
 #include "render/mesh/ambient_occlusion.h"
@@ -68,7 +69,8 @@ std::vector<Drawable> make_drawables(std::span<const Part* const> parts, const M
     surfaces[p] = {positions, normals, parts[p]->mesh.triangles};
     set_shade_layers(*parts[p], lower_jaw, surfaces[p]);
   }
-  const auto occlusion = bake_occlusion(surfaces, occlusion_directions, bake_threads);
+  const auto occlusion =
+      stored_occlusion(user_cache_folder(), surfaces, occlusion_directions, bake_threads);
 
   std::vector<Drawable> drawables;
   drawables.reserve(parts.size());
