@@ -1,10 +1,7 @@
 #include "engine/collide/collision_mesh.h"
 
-#include <fcl/geometry/bvh/BVH_model.h>
-#include <fcl/narrowphase/collision.h>
 #include <fcl/narrowphase/detail/traversal/collision/mesh_collision_traversal_node.h>
 #include <fcl/narrowphase/detail/traversal/collision_node.h>
-#include <fcl/narrowphase/distance.h>
 
 #include <algorithm>
 #include <array>
@@ -13,24 +10,14 @@
 #include <utility>
 
 #include "engine/collide/box_bound.h"
+#include "engine/collide/fcl_model.h"
 #include "engine/collide/shells.h"
 #include "engine/collide/triangle_distance.h"
 
 namespace condyle {
 namespace {
 
-using Bounds = fcl::OBBRSSd;
-using Model = fcl::BVHModel<Bounds>;
-
-// The packaged library was built with an alignment of 16; wider vector flags would be incompatible.
-static_assert(alignof(fcl::Transform3d) == 16);
-
-fcl::Transform3d transform(const Pose& X) {
-  fcl::Transform3d T = fcl::Transform3d::Identity();
-  T.linear() = X.R.toRotationMatrix();
-  T.translation() = X.t;
-  return T;
-}
+using Model = fcl::BVHModel<fcl::OBBd>;
 
 /// At this depth the tree is divided into regions of its surface.
 constexpr int region_depth = 6;
@@ -51,7 +38,7 @@ int held_triangle(int held) { return -1 - held; }
 void describe_nodes(Surface& surface, int node, int depth, int region, std::size_t boxes,
                     int which) {
   const auto& bv = surface.model.getBV(node);
-  const auto& box = bv.bv.obb;
+  const auto& box = bv.bv;
   const int held =
       bv.isLeaf() ? holding_triangle(bv.primitiveId()) : static_cast<int>(surface.boxes.size());
   surface.boxes[boxes].set(which, box.To, box.extent, box.axis, held);
@@ -259,7 +246,7 @@ class PathContactTest {
 };
 
 /// Collects crossing triangles, in each region of A at most `per_region`.
-class CrossingPairs final : public fcl::detail::MeshCollisionTraversalNodeOBBRSS<double> {
+class CrossingPairs final : public fcl::detail::MeshCollisionTraversalNodeOBB<double> {
  public:
   CrossingPairs(const Surface& a, const Surface& b, const fcl::Transform3d& X, std::size_t total,
                 int per_region)
@@ -270,7 +257,7 @@ class CrossingPairs final : public fcl::detail::MeshCollisionTraversalNodeOBBRSS
   bool BVTesting(int node_a, int node_b) const override {
     const int region = region_[node_a];
     if (region >= 0 && count_[region] >= per_region_) return true;  // full: skipped
-    return MeshCollisionTraversalNodeOBBRSS::BVTesting(node_a, node_b);
+    return MeshCollisionTraversalNodeOBB::BVTesting(node_a, node_b);
   }
   void leafTesting(int node_a, int node_b) const override {
     const TrianglePair pair{a_.getBV(node_a).primitiveId(), b_.getBV(node_b).primitiveId()};
@@ -310,19 +297,12 @@ struct CollisionMesh::Tree : Surface {};
 
 CollisionMesh::CollisionMesh(const TriMesh& mesh) : tree_(std::make_unique<Tree>()) {
   require_sound(mesh);
-  std::vector<fcl::Triangle> triangles;
-  triangles.reserve(mesh.triangles.size());
-  for (const auto& t : mesh.triangles) {
+  for (const auto& t : mesh.triangles)
     for (const int v : t) box_.add(mesh.vertices[static_cast<std::size_t>(v)]);
-    triangles.emplace_back(static_cast<std::size_t>(t[0]), static_cast<std::size_t>(t[1]),
-                           static_cast<std::size_t>(t[2]));
-  }
   Model& model = tree_->model;
-  model.beginModel(static_cast<int>(triangles.size()), static_cast<int>(mesh.vertices.size()));
-  model.addSubModel(mesh.vertices, triangles);
-  model.endModel();
+  build_model(mesh, model);
   tree_->region.resize(static_cast<std::size_t>(model.getNumBVs()));
-  tree_->boxes.reserve(triangles.size());
+  tree_->boxes.reserve(mesh.triangles.size());
   tree_->boxes.emplace_back();
   describe_nodes(*tree_, 0, 0, 0, 0, 0);
 }
@@ -334,7 +314,7 @@ CollisionMesh& CollisionMesh::operator=(CollisionMesh&&) noexcept = default;
 MeshDistance distance(const CollisionMesh& a, const Pose& X_WA, const CollisionMesh& b,
                       const Pose& X_WB, TrianglePair start) {
   if (start.a < 0 || start.b < 0) start = {0, 0};
-  const NearestPair nearest(a.tree(), b.tree(), transform(X_WA.inverse() * X_WB), start,
+  const NearestPair nearest(a.tree(), b.tree(), fcl_transform(X_WA.inverse() * X_WB), start,
                             std::numeric_limits<double>::infinity());
   return {nearest.best_mm, X_WA * nearest.best.p, X_WA * nearest.best.q, nearest.triangles};
 }
@@ -342,7 +322,7 @@ MeshDistance distance(const CollisionMesh& a, const Pose& X_WA, const CollisionM
 std::optional<MeshDistance> distance_within(double reach_mm, const CollisionMesh& a,
                                             const Pose& X_WA, const CollisionMesh& b,
                                             const Pose& X_WB, TrianglePair start) {
-  const NearestPair nearest(a.tree(), b.tree(), transform(X_WA.inverse() * X_WB), start,
+  const NearestPair nearest(a.tree(), b.tree(), fcl_transform(X_WA.inverse() * X_WB), start,
                             reach_mm * reach_mm);
   if (nearest.triangles.a < 0) return std::nullopt;
   return MeshDistance{nearest.best_mm, X_WA * nearest.best.p, X_WA * nearest.best.q,
@@ -352,7 +332,7 @@ std::optional<MeshDistance> distance_within(double reach_mm, const CollisionMesh
 bool touching(const CollisionMesh& a, const Pose& X_WA, const CollisionMesh& b, const Pose& X_WB,
               TrianglePair start) {
   constexpr double just_above_touch_mm2 = 2e-24;
-  const NearestPair nearest(a.tree(), b.tree(), transform(X_WA.inverse() * X_WB), start,
+  const NearestPair nearest(a.tree(), b.tree(), fcl_transform(X_WA.inverse() * X_WB), start,
                             just_above_touch_mm2);
   return nearest.best_mm == 0;
 }
@@ -360,14 +340,14 @@ bool touching(const CollisionMesh& a, const Pose& X_WA, const CollisionMesh& b, 
 bool clear_on_path(const CollisionMesh& stays, const Pose& X_WS, const CollisionMesh& moves,
                    const Pose& X_WM, const BodyPath& path, double min_distance_mm,
                    TrianglePair start) {
-  const PathContactTest met(stays.tree(), moves.tree(), transform(X_WS.inverse() * X_WM), path,
+  const PathContactTest met(stays.tree(), moves.tree(), fcl_transform(X_WS.inverse() * X_WM), path,
                             min_distance_mm);
   return !met.found_at(start) && !met.found();
 }
 
 std::vector<MeshContact> contacts(const CollisionMesh& a, const Pose& X_WA, const CollisionMesh& b,
                                   const Pose& X_WB, ContactLimits limits) {
-  CrossingPairs crossing(a.tree(), b.tree(), transform(X_WA.inverse() * X_WB),
+  CrossingPairs crossing(a.tree(), b.tree(), fcl_transform(X_WA.inverse() * X_WB),
                          static_cast<std::size_t>(std::max(limits.total, 0)), limits.per_region);
   if (limits.total > 0 && limits.per_region > 0) fcl::detail::collide(&crossing);
   for (auto& contact : crossing.found) {
@@ -379,24 +359,9 @@ std::vector<MeshContact> contacts(const CollisionMesh& a, const Pose& X_WA, cons
 
 double overlap(const CollisionMesh& a, const Pose& X_WA, const CollisionMesh& b, const Pose& X_WB,
                TrianglePair triangles) {
-  return triangle_overlap(corners(a.tree().model, triangles.a),
-                          corners(b.tree().model, triangles.b, transform(X_WA.inverse() * X_WB)));
-}
-
-PlainQuery plain_query(const CollisionMesh& a, const Pose& X_WA, const CollisionMesh& b,
-                       const Pose& X_WB, int max_contacts) {
-  const Model &model_a = a.tree().model, &model_b = b.tree().model;
-  const fcl::Transform3d X_A = transform(X_WA), X_B = transform(X_WB);
-  const fcl::CollisionRequestd collision(static_cast<std::size_t>(max_contacts), true);
-  fcl::CollisionResultd crossing;
-  fcl::collide(&model_a, X_A, &model_b, X_B, collision, crossing);
-  PlainQuery query;
-  query.contacts = static_cast<int>(crossing.numContacts());
-  if (query.contacts > 0) return query;
-  fcl::DistanceResultd nearest;
-  query.distance_mm =
-      fcl::distance(&model_a, X_A, &model_b, X_B, fcl::DistanceRequestd(true), nearest);
-  return query;
+  return triangle_overlap(
+      corners(a.tree().model, triangles.a),
+      corners(b.tree().model, triangles.b, fcl_transform(X_WA.inverse() * X_WB)));
 }
 
 }  // namespace condyle

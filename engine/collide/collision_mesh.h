@@ -32,7 +32,7 @@ struct MeshContact {
   TrianglePair triangles;
 };
 
-/// A surface with its tree of boxes (FCL's BVHModel<OBBRSS>) in body coordinates: built once, moved
+/// A surface with its tree of boxes (FCL's BVHModel<OBB>) in body coordinates: built once, moved
 /// by its pose alone. Queries are const and thread-safe.
 class CollisionMesh {
  public:
@@ -106,14 +106,5 @@ std::vector<MeshContact> contacts(const CollisionMesh& a, const Pose& X_WA, cons
 /// Length of the shortest translation that separates the two triangles of a contact, mm.
 double overlap(const CollisionMesh& a, const Pose& X_WA, const CollisionMesh& b, const Pose& X_WB,
                TrianglePair triangles);
-
-/// FCL's own queries on the same trees, without a warm start: the baseline of the benchmarks. Their
-/// contacts and distances are not reliable (see distance).
-struct PlainQuery {
-  int contacts = 0;  // crossing triangles found, up to `max_contacts`
-  double distance_mm = 0;
-};
-PlainQuery plain_query(const CollisionMesh& a, const Pose& X_WA, const CollisionMesh& b,
-                       const Pose& X_WB, int max_contacts);
 
 }  // namespace condyle

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <thread>
 
-#include "engine/collide/collision_mesh.h"
+#include "engine/collide/plain_query.h"
 #include "engine/collide/slide.h"
 #include "engine/core/error.h"
 #include "engine/mesh/measure.h"
@@ -139,7 +139,7 @@ void measure_pair(const Jaws& jaws, int triangles, int threads, bool baselines, 
   SlideSettings settings;
   settings.pivot = jaws.center;
   const SlidingContact model({fixed}, {moving}, settings);
-  const CollisionMesh surface_a(upper), surface_b(lower);
+  const PlainSurface surface_a(upper), surface_b(lower);
   const int most = static_cast<int>(std::max(upper.triangles.size(), lower.triangles.size()));
 
   constexpr int frames = 300, warm_up = 10, look_every = 6;
