@@ -43,6 +43,11 @@ class BufferPool {
     return Buffer(std::make_unique<T[]>(length_).release(), GiveBack{shelf_});
   }
   std::size_t length() const { return length_; }
+  /// Of the arrays that wait for their next use.
+  std::size_t pooled_bytes() const {
+    const std::lock_guard lock(shelf_->mutex);
+    return shelf_->arrays.size() * length_ * sizeof(T);
+  }
 
  private:
   std::shared_ptr<Shelf> shelf_;

@@ -443,4 +443,10 @@ double TriangleTree::winding_number(const Vector3d& p) const {
   return sum / (4 * std::numbers::pi);
 }
 
+std::size_t TriangleTree::bytes() const {
+  const auto held = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
+  return held(nodes_) + held(clusters_) + held(corners_) + held(triangle_) + held(slot_) +
+         held(edge_normals_) + held(corner_normals_) + held(face_normals_);
+}
+
 }  // namespace condyle

@@ -96,6 +96,9 @@ class TriangleTree {
   void winding_numbers(const Eigen::Vector3d& center, double radius,
                        std::span<const Eigen::Vector3d> points, std::span<double> found) const;
 
+  /// Memory that it holds.
+  std::size_t bytes() const;
+
  private:
   TriangleTree() = default;
   struct Node {

@@ -248,4 +248,9 @@ std::size_t BlockCholesky::bytes() const {
              sizeof(int);
 }
 
+std::size_t BlockCholesky::pooled_bytes() const {
+  return memory_->values.pooled_bytes() + memory_->panels.pooled_bytes() +
+         memory_->work.pooled_bytes();
+}
+
 }  // namespace condyle

@@ -38,6 +38,8 @@ class BlockCholesky {
   void solve(std::vector<float>& b, int threads) const;
 
   std::size_t bytes() const;
+  /// Arrays of factors and factorizations that are kept for the next one.
+  std::size_t pooled_bytes() const;
 
  private:
   struct Memory;

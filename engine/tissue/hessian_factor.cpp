@@ -62,4 +62,13 @@ double HessianFactor::iterations_per_factorization() const {
 
 std::size_t HessianFactor::bytes() const { return factor_.bytes(); }
 
+std::size_t HessianFactor::shared_bytes() const {
+  const auto held = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
+  std::size_t sum = held(pattern_->seats) + held(pattern_->diagonal) + held(pattern_->spring) +
+                    held(pattern_->prism);
+  for (const auto& part : pattern_->elements)
+    sum += held(part.springs) + held(part.anchors) + held(part.prisms);
+  return sum + factor_.pooled_bytes();
+}
+
 }  // namespace condyle

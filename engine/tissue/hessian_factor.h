@@ -43,6 +43,8 @@ class HessianFactor final : public Preconditioner {
 
   /// Memory of the factor and the work space of a solve.
   std::size_t bytes() const override;
+  /// Memory that it shares with its copies, beyond bytes().
+  std::size_t shared_bytes() const;
 
  private:
   HessianFactor(std::shared_ptr<const HessianPattern> pattern, BlockCholesky factor);

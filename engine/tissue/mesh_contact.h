@@ -39,6 +39,8 @@ class ContactObstacle {
   bool near(const Eigen::Vector3d& p, double reach, Near& near) const;
   /// The shortest displacement out of the body for a point inside, mm; zero outside.
   Eigen::Vector3d exit_displacement(const Eigen::Vector3d& p) const;
+  /// Memory that it holds.
+  std::size_t bytes() const { return field_.memory_bytes() + surface_.bytes(); }
 
  private:
   /// Replaces the normal at p by the patch average where contact forces can occur.

@@ -53,4 +53,10 @@ bool MeshSurface::on_rim(int triangle, const Eigen::Vector3d& barycentric) const
   return count == 2 && std::binary_search(rim_edges_.begin(), rim_edges_.end(), edge(on[0], on[1]));
 }
 
+std::size_t MeshSurface::bytes() const {
+  const auto held = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
+  return held(triangles_) + held(nodes_) + held(corners_) + held(rim_corner_) + held(rim_edges_) +
+         (tree_ ? tree_->bytes() : 0);
+}
+
 }  // namespace condyle

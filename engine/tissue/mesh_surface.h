@@ -29,6 +29,9 @@ class MeshSurface {
   /// Whether a point of the triangle lies on the surface's rim.
   bool on_rim(int triangle, const Eigen::Vector3d& barycentric) const;
 
+  /// Memory that it holds.
+  std::size_t bytes() const;
+
  private:
   std::vector<std::array<int, 3>> triangles_;
   std::vector<int> nodes_;  // rising
