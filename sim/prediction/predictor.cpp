@@ -8,7 +8,9 @@
 #include <utility>
 
 #include "engine/core/error.h"
+#include "engine/core/user_cache.h"
 #include "sim/tissue/lips.h"
+#include "sim/tissue/stored_tissue.h"
 
 namespace condyle {
 namespace {
@@ -68,7 +70,7 @@ void Predictor::build_whole(const Progress& progress) {
   if (!whole_) {
     TissueSettings of_tissue = settings_.tissue;
     of_tissue.threads = settings_.threads;
-    whole_ = build_tissue(uncut_, of_tissue, progress);
+    whole_ = stored_tissue(user_cache_folder(), uncut_, of_tissue, progress);
   }
   if (rest_face_.empty()) deform_face(*whole_, rest_tissue(*whole_), rest_face_, settings_.threads);
 }

@@ -5,11 +5,13 @@
 #include <cmath>
 #include <utility>
 
+#include "engine/core/user_cache.h"
 #include "sim/frame/state_hash.h"
 #include "sim/motion/closed_position.h"
 #include "sim/motion/measure_pose.h"
 #include "sim/muscles/default_face_muscles.h"
 #include "sim/tissue/lips.h"
+#include "sim/tissue/stored_tissue.h"
 
 namespace condyle {
 
@@ -24,7 +26,7 @@ Scene make_scene(Case patient, const SimulatorSettings& settings, const Progress
     TissueSettings of_tissue = settings.tissue_model;
     of_tissue.threads = settings.threads;
     of_tissue.face_muscles = muscles_of_face(patient);
-    tissue = build_tissue(patient, of_tissue, progress);
+    tissue = stored_tissue(user_cache_folder(), patient, of_tissue, progress);
   }
   report(progress, "building the soft tissue", 1.0);
   return {std::move(patient), std::move(contacts), std::move(tissue)};
@@ -72,7 +74,8 @@ Scene edited_scene(const Scene& before, Case patient, const SimulatorSettings& s
     of_tissue.threads = settings.threads;
     of_tissue.face_muscles = muscles_of_face(patient);
     const bool unchanged = before.tissue && same_for_tissue(before.patient, patient);
-    tissue = unchanged ? before.tissue : build_tissue(patient, of_tissue, progress);
+    tissue = unchanged ? before.tissue
+                       : stored_tissue(user_cache_folder(), patient, of_tissue, progress);
   }
   report(progress, "building the soft tissue", 1.0);
   return {std::move(patient), std::move(contacts), std::move(tissue), before.plan};

@@ -53,6 +53,11 @@ class BodyWeights {
   }
   void add(BodyId body, double weight) { add(std::array{BodyWeight{body, weight}}); }
 
+  template <class Archive>
+  void fields(Archive& archive) {  // see engine/core/archive.h
+    archive(first_, entries_);
+  }
+
  private:
   std::vector<std::size_t> first_{0};
   std::vector<BodyWeight> entries_;

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "engine/tissue/frame_embedding.h"
-#include "engine/tissue/hessian_factor.h"
 #include "engine/tissue/spring_prism.h"
 #include "sim/tissue/body_weights.h"
 #include "sim/tissue/muscle_lines.h"
@@ -17,6 +16,8 @@
 #include "sim/tissue/tissue_contact.h"
 
 namespace condyle {
+
+class PathFactors;
 
 /// The material: columns of prisms and springs from the skin inward.
 struct TissueMesh {
@@ -47,12 +48,6 @@ struct TissueSupport {
   Nodes held_force;
 };
 
-/// Preconditioner for states rotated by `from_rad` or more.
-struct PathFactor {
-  double from_rad = 0;
-  std::shared_ptr<const HessianFactor> factor;
-};
-
 /// How the columns, as its handles, carry the displayed face.
 struct FaceDisplay {
   RegionShape region;
@@ -78,7 +73,7 @@ struct TissueModel {
   std::shared_ptr<const TissueMesh> mesh;
   TissueSupport support;
   std::shared_ptr<const TissueContact> contact;
-  std::vector<PathFactor> factors;  // increasing, the first from 0
+  std::shared_ptr<const PathFactors> factors;
   OpeningPredictor opening;
   std::shared_ptr<const FaceDisplay> display;
   std::shared_ptr<const PlannedRest> planned;  // null: at rest as the mesh
@@ -86,7 +81,9 @@ struct TissueModel {
   TissueMuscles muscles;
 };
 
-/// Poses of the bodies from the mesh's rest, of poses from the model's.
+/// Poses of the bodies from the mesh's rest, of poses from the planned one; null: the mesh's own.
+std::vector<Pose> poses_from_mesh(const PlannedRest* planned, std::span<const Pose> X_CB);
+/// The same, of poses from the model's rest.
 std::vector<Pose> poses_from_mesh(const TissueModel& model, std::span<const Pose> X_CB);
 
 /// Loads of the bones and muscles on the tissue with the bodies at X_CB. `excitation`: of each

@@ -25,6 +25,11 @@ class OralFissure {
   /// above, -1 below.
   double distance(const Eigen::Vector3d& p, int side_p, const Eigen::Vector3d& q, int side_q) const;
 
+  template <class Archive>
+  void fields(Archive& archive) {  // see engine/core/archive.h
+    archive(x_, z_, right_, left_);
+  }
+
  private:
   std::vector<double> x_, z_;
   Eigen::Vector3d right_ = Eigen::Vector3d::Zero(), left_ = Eigen::Vector3d::Zero();

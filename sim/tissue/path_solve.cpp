@@ -4,26 +4,18 @@
 
 #include "sim/frame/body_poses.h"
 #include "sim/tissue/model.h"
+#include "sim/tissue/path_factors.h"
 #include "sim/tissue/planned_rest.h"
 #include "sim/tissue/tissue_defaults.h"
 
 namespace condyle {
 
-// A factor is kept at each knot: the tissue of the lower face rotates with the jaw, and a factor of
-// the unrotated tissue needs several times the iterations.
 void make_opening_path(const Eigen::Vector3d& condyles, TissueModel& model, int threads) {
-  const TissueMesh& mesh = *model.mesh;
-  const auto add_factor = [&](double from_rad, const TissueState& state) {
-    model.factors.push_back(
-        {from_rad, std::make_shared<HessianFactor>(mesh.elements,
-                                                   contact_loads(model, state.X_CB, state.nodes),
-                                                   mesh.sheets, state.nodes, threads)});
-  };
   auto path = std::make_shared<OpeningPath>();
   path->condyles = condyles;
   model.opening.path = path;
+  model.factors = std::make_shared<const PathFactors>(model, threads);
   TissueState state = rest_tissue(model);
-  add_factor(0, state);
   TissueWarmStart warm;
   std::vector<Nodes> nodes{state.nodes};
   TissueBudget budget;
@@ -31,14 +23,12 @@ void make_opening_path(const Eigen::Vector3d& condyles, TissueModel& model, int 
   budget.max_iterations = 300;
   budget.threads = threads;
   for (int i = 1; i < tissue_defaults::path_knots; ++i) {
-    const double angle = i * path->step_rad;
     BodyPoses at;
-    for (const BodyId body : model.opening.along) at[body] = path->pose(angle);
+    for (const BodyId body : model.opening.along) at[body] = path->pose(i * path->step_rad);
     state = solve_tissue(model, state, at.X_CB, budget, warm);
     // the limit of opening for this tissue
     if (!state.converged || state.inverted_prisms > 0) break;
     nodes.push_back(state.nodes);
-    add_factor(angle - path->step_rad / 2, state);
   }
   path->nodes = std::move(nodes);
 }
@@ -54,7 +44,6 @@ std::shared_ptr<const TissueModel> with_planned_rest(const TissueModel& model,
   auto rested = std::make_shared<TissueModel>(model);
   rested->planned = std::move(planned);
   rested->muscles = at_new_rest(std::move(rested->muscles), state.nodes, state.X_CB);
-  rested->factors.clear();
   make_opening_path(model.opening.path->condyles, *rested, threads);
   return rested;
 }

@@ -8,6 +8,7 @@
 #include "engine/minimize/minimize.h"
 #include "sim/frame/body_poses.h"
 #include "sim/tissue/model.h"
+#include "sim/tissue/path_factors.h"
 #include "sim/tissue/pose_steps.h"
 #include "sim/tissue/solver_cache.h"
 
@@ -15,14 +16,17 @@ namespace condyle {
 
 using Eigen::Vector3d;
 
-std::vector<Pose> poses_from_mesh(const TissueModel& model, std::span<const Pose> X_CB) {
+std::vector<Pose> poses_from_mesh(const PlannedRest* planned, std::span<const Pose> X_CB) {
   std::vector<Pose> from_mesh(X_CB.begin(), X_CB.end());
-  if (!model.planned) return from_mesh;
-  const std::vector<Pose>& planned = model.planned->X_CB;
-  from_mesh.resize(std::max(X_CB.size(), planned.size()));
-  for (std::size_t b = 0; b < planned.size(); ++b)
-    from_mesh[b] = composed(from_mesh[b], planned[b]);
+  if (!planned) return from_mesh;
+  from_mesh.resize(std::max(X_CB.size(), planned->X_CB.size()));
+  for (std::size_t b = 0; b < planned->X_CB.size(); ++b)
+    from_mesh[b] = composed(from_mesh[b], planned->X_CB[b]);
   return from_mesh;
+}
+
+std::vector<Pose> poses_from_mesh(const TissueModel& model, std::span<const Pose> X_CB) {
+  return poses_from_mesh(model.planned.get(), X_CB);
 }
 
 MeshLoads loads_at(const TissueModel& model, std::span<const Pose> X_CB_now,
@@ -80,16 +84,6 @@ constexpr int iterations_per_contact = 8;
 constexpr int max_contact_rounds = 40;
 /// A frame whose contacts are off by more than this has not converged.
 constexpr double accepted_contact_mm = 0.1;
-
-/// The stored factor of the nearest state on the opening path.
-std::shared_ptr<const HessianFactor> path_factor(const TissueModel& model,
-                                                 std::span<const Pose> X_CB) {
-  const double turned = rotation_angle(pose_in(X_CB, model.opening.body));
-  const auto* nearest = &model.factors.front();
-  for (const auto& other : model.factors)
-    if (turned >= other.from_rad) nearest = &other;
-  return nearest->factor;
-}
 
 }  // namespace
 
@@ -223,7 +217,8 @@ TissueState solve_step(const TissueModel& model, const TissueState& previous,
   const SolverCache* last = warm.last.get();
   AsyncPreconditioner factor = last && last->mesh == model.mesh
                                    ? last->factor
-                                   : AsyncPreconditioner(path_factor(model, X_CB));
+                                   : AsyncPreconditioner(model.factors->nearest(
+                                         rotation_angle(pose_in(X_CB, model.opening.body))));
   factor.advance();
   if (last && last->contact != model.contact) last = nullptr;  // of other obstacles
   NearObstacles near = last ? last->near : NearObstacles{};

@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "engine/core/parallel.h"
+#include "engine/core/user_cache.h"
 #include "engine/mesh/measure.h"
 #include "engine/tissue/layered_mesh.h"
 
@@ -158,16 +159,20 @@ Obstacle obstacle_of(const TissueContact& contact, const Nodes& rest, const Body
   Obstacle made;
   made.body = bone.body;
   made.extent = bounding_box(bone.mesh);
-  Box region;
-  for (const auto& point : contact.points) region.add(point.at(rest));
-  region.low.array() -= swept_mm;
-  region.high.array() += swept_mm;
-  made.surface =
-      std::make_shared<ContactObstacle>(bone.mesh, region, field_cache_folder(), threads);
+  made.surface = surface_near(contact, rest, bone, threads);
   return made;
 }
 
 }  // namespace
+
+std::shared_ptr<const ContactObstacle> surface_near(const TissueContact& contact, const Nodes& rest,
+                                                    const BodySurface& bone, int threads) {
+  Box region;
+  for (const auto& point : contact.points) region.add(point.at(rest));
+  region.low.array() -= swept_mm;
+  region.high.array() += swept_mm;
+  return std::make_shared<const ContactObstacle>(bone.mesh, region, user_cache_folder(), threads);
+}
 
 void fit_to_rest(const TissueContact& contact, const Nodes& rest,
                  const std::vector<std::optional<Vector3d>>& shift, Obstacle& obstacle) {
@@ -215,7 +220,7 @@ Obstacle make_piece_obstacle(const TissueContact& contact, const Nodes& rest,
   made.body = piece.body;
   made.extent = bounding_box(piece.mesh);
   made.surface = std::make_shared<ContactObstacle>(piece.mesh, uncut, *of_uncut.surface,
-                                                   field_cache_folder(), threads);
+                                                   user_cache_folder(), threads);
   fit_to_rest(contact, rest, shift, made);
   return made;
 }

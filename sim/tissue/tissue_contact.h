@@ -74,6 +74,10 @@ struct BodySurface {
 TissueContact make_contact(const ContactSource& source, std::span<const BodySurface> bones,
                            int threads = 1);
 
+/// A body's surface where the points of the contact may come.
+std::shared_ptr<const ContactObstacle> surface_near(const TissueContact& contact, const Nodes& rest,
+                                                    const BodySurface& bone, int threads = 1);
+
 /// A body's surface, with the overlap of the points at rest. `shift` of each point: its
 /// displacement out of this surface, or none for the shortest. Only `points` and `front` of the
 /// contact are used.
