@@ -6,6 +6,8 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "engine/core/error.h"
+#include "engine/core/user_cache.h"
 #include "engine/dicom/ct_volume.h"
 #include "engine/mesh/topology.h"
 #include "engine/mesh_io/mesh_files.h"
@@ -13,6 +15,9 @@
 #include "sim/case/case_io.h"
 #include "sim/dynamics/body_mass.h"
 #include "sim/phantom/head_shape.h"
+#include "sim/tissue/lips.h"
+#include "sim/tissue/stored_tissue.h"
+#include "sim/tissue/tissue_memory.h"
 #include "tools/commands.h"
 #include "tools/common.h"
 #include "tools/series_list.h"
@@ -125,7 +130,55 @@ std::string line(const Volume& volume) {
       json["highest_hu"].get<int>());
 }
 
-int run_info(const std::filesystem::path& what, const CommonOptions& common) {
+struct InfoOptions {
+  std::filesystem::path what;
+  bool tissue = false;
+  int surface_nodes = TissueSettings{}.surface_nodes;
+};
+
+/// Size of the patient's soft tissue. throws: InputError for a patient without a face.
+Json tissue_size(Case patient, const InfoOptions& options, const CommonOptions& common,
+                 ProgressBar& bar) {
+  part_lips(patient);
+  TissueSettings settings;
+  settings.surface_nodes = options.surface_nodes;
+  settings.threads = common.threads;
+  const auto tissue = stored_tissue(user_cache_folder(), patient, settings, bar.callback());
+  if (!tissue) throw InputError("--tissue: " + patient.name + " has no face");
+  const TissueSummary& made = summary(*tissue);
+  const TissueMemory memory = memory_of(*tissue);
+  return {{"nodes", made.nodes},
+          {"springs", made.springs},
+          {"prisms", made.prisms},
+          {"bytes_per_node", static_cast<double>(memory.tissue) / made.nodes},
+          {"bytes", memory.tissue},
+          {"displayed_face_bytes", memory.displayed_face},
+          {"bone_surface_bytes", memory.bone_surfaces},
+          {"stored_factors",
+           {{"made", memory.factors_made},
+            {"bytes", memory.factors},
+            {"most", memory.factors_most},
+            {"most_bytes", memory.most_factors()}}}};
+}
+
+std::string tissue_lines(const Json& json) {
+  const auto MB = [](const Json& bytes) { return bytes.get<double>() / 1e6; };
+  const Json& factors = json["stored_factors"];
+  return fmt::format(
+      "  soft tissue: {} nodes, {} springs, {} prisms; {:.2f} kB a node ({:.1f} MB), displayed "
+      "face {:.1f} MB, bones that it touches {:.1f} MB\n"
+      "    stored factors: {} of {} made, {:.1f} MB; all would take {:.1f} MB\n",
+      json["nodes"].get<int>(), json["springs"].get<int>(), json["prisms"].get<int>(),
+      json["bytes_per_node"].get<double>() / 1e3, MB(json["bytes"]),
+      MB(json["displayed_face_bytes"]), MB(json["bone_surface_bytes"]), factors["made"].get<int>(),
+      factors["most"].get<int>(), MB(factors["bytes"]), MB(factors["most_bytes"]));
+}
+
+int run_info(const InfoOptions& options, const CommonOptions& common) {
+  const std::filesystem::path& what = options.what;
+  if (options.tissue && !what.empty() && !is_head_name(what.string()) &&
+      (!std::filesystem::is_directory(what) || holds_dicom(what)))
+    throw InputError("--tissue: " + what.string() + " is not a case");
   if (is_volume_file(what) && !std::filesystem::is_directory(what)) {
     const Volume volume = read_volume(what);
     fmt::print("{}\n", common.json
@@ -147,6 +200,7 @@ int run_info(const std::filesystem::path& what, const CommonOptions& common) {
     return 0;
   }
   const Case patient = open_patient(what, common, bar);
+  const Json tissue = options.tissue ? tissue_size(patient, options, common, bar) : Json();
   bar.clear();
   Json json = {{"name", patient.name},
                {"source_units", patient.source.units},
@@ -162,6 +216,7 @@ int run_info(const std::filesystem::path& what, const CommonOptions& common) {
   for (const auto& [name, point] : patient.landmarks.points)
     json["landmarks"][name] = {point.x(), point.y(), point.z()};
   for (const auto& canal : patient.canals) json["canals"].push_back(describe(patient, canal));
+  if (options.tissue) json["tissue"] = tissue;
   json["notes"] = patient.notes;
   if (common.json) {
     fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
@@ -178,6 +233,7 @@ int run_info(const std::filesystem::path& what, const CommonOptions& common) {
   fmt::print("  {} landmarks:", patient.landmarks.points.size());
   for (const auto& [name, point] : patient.landmarks.points) fmt::print(" {}", name);
   fmt::print("\n");
+  if (options.tissue) fmt::print("{}", tissue_lines(tissue));
   for (const auto& note : patient.notes) fmt::print("  note: {}\n", note);
   return 0;
 }
@@ -185,14 +241,22 @@ int run_info(const std::filesystem::path& what, const CommonOptions& common) {
 }  // namespace
 
 void add_info(Commands& commands) {
-  const auto what = std::make_shared<std::filesystem::path>();
+  const auto options = std::make_shared<InfoOptions>();
   CLI::App& command = commands.add(
       "info", "Describe a case, a surface file or a scan", "condyle info mycase --json",
-      [what](const CommonOptions& common) { return run_info(*what, common); });
+      [options](const CommonOptions& common) { return run_info(*options, common); });
   command.add_option(
-      "CASE|FILE", *what,
+      "CASE|FILE", options->what,
       "Case folder, surface file, folder of a CT scan (DICOM) or volume (.nrrd, .nhdr, .mha, .mhd, "
       ".nii, .nii.gz; default: the built-in patient)");
+  CLI::Option* tissue = command.add_flag(
+      "--tissue", options->tissue,
+      "Also build the soft tissue of a case, and show its size and its memory for each node");
+  in_range(command
+               .add_option("--surface-nodes", options->surface_nodes,
+                           "Nodes of one layer of the soft tissue, about; default 520")
+               ->needs(tissue),
+           100, 20000);
 }
 
 }  // namespace condyle
