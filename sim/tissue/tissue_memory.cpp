@@ -37,10 +37,10 @@ TissueMemory memory_of(const TissueModel& model) {
   for (const Obstacle& obstacle : contact.obstacles)
     memory.bone_surfaces += obstacle.surface->bytes();
   const PathFactors& factors = *model.factors;
+  memory.bytes_of_a_factor = factors.bytes_of_one();  // makes the first
   memory.factors = factors.bytes();
   memory.factors_made = factors.made();
   memory.factors_most = factors.most();
-  memory.bytes_of_a_factor = factors.bytes_of_one();
   return memory;
 }
 
