@@ -29,12 +29,13 @@ class AsyncPreconditioner {
     superseded_ = next_.valid();
   }
 
-  /// Frames from the start of a factorization to its use.
-  static int lag(const HessianFactor& factor);
+  /// Frames from the start of a factorization to its use. `frame_iterations`: of the frames
+  /// meanwhile, about; 0: few.
+  static int lag(const HessianFactor& factor, int frame_iterations = 0);
   /// Starts the factorisation at state x, for use lag() frames later; ignored while one is pending.
   /// With one thread it is computed when due, or in `finish`. `owner` keeps the mesh alive.
   void begin(const SpringPrismMesh& mesh, MeshLoads loads, Nodes x, int threads,
-             std::shared_ptr<const void> owner);
+             std::shared_ptr<const void> owner, int frame_iterations = 0);
   /// Waits for the pending factor, or computes it: for use between frames with a single thread.
   void finish() const {
     if (next_.valid() && !superseded_) next_.wait();

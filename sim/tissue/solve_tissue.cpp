@@ -239,7 +239,7 @@ TissueState solve_step(const TissueModel& model, const TissueState& previous,
   factor.add_iterations(state.iterations);
   if (state.iterations > refactor_beside_loop_after ||
       (!state.converged && factor.iterations_used() > refactor_beside_loop_after_all))
-    factor.begin(mesh.elements, loads, state.nodes, budget.threads, model.mesh);
+    factor.begin(mesh.elements, loads, state.nodes, budget.threads, model.mesh, state.iterations);
   const ContactMeasure measured =
       measure_contact(contact, touching.contacts, from_mesh, mesh.rest, state.nodes);
   state.contact_error_mm = std::max(touching.error_mm, touching.gap_mm);

@@ -31,6 +31,16 @@ TEST(AsyncPreconditioner, ItsLagIsFixedBySize) {
   EXPECT_EQ(lag_of(size_of_nodes(10000)), 5);
 }
 
+TEST(AsyncPreconditioner, ItsLagIsShorterWhereFramesTakeManyIterations) {
+  const auto factor = factor_at_rest(make_synthetic_set(size_of_nodes(10000)));
+  EXPECT_EQ(AsyncPreconditioner::lag(*factor, 1), 5);
+  const double iterations = factor->iterations_per_factorization() - 8;
+  EXPECT_EQ(AsyncPreconditioner::lag(*factor, static_cast<int>(iterations) + 1), 2);
+  EXPECT_EQ(AsyncPreconditioner::lag(*factor, static_cast<int>(iterations / 3) + 1), 4);
+  // A factor of a small mesh is due in the next frame anyway.
+  EXPECT_EQ(AsyncPreconditioner::lag(*factor_at_rest(make_synthetic_set(table1_size())), 100), 1);
+}
+
 TEST(AsyncPreconditioner, AFactorIsUsedFromItsFrameOnWithTheSameBitsForAnyThreads) {
   const SyntheticSet set = make_synthetic_set(size_of_nodes(6000));
   const auto first = factor_at_rest(set);
