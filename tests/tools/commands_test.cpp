@@ -179,6 +179,37 @@ TEST(Json, GoesAloneToStandardOutput) {
   EXPECT_EQ(condyle({"info", patient, "--quiet"}).err, "");
 }
 
+TEST(Info, StatesTheMemoryOfTheSoftTissue) {
+  const auto outcome = condyle({"info", "--tissue", "--json"});
+  ASSERT_EQ(outcome.code, 0) << outcome.err;
+  const auto tissue = nlohmann::json::parse(outcome.out)["tissue"];
+  const double nodes = tissue["nodes"].get<double>();
+  EXPECT_EQ(nodes, 2140);
+  EXPECT_DOUBLE_EQ(tissue["bytes_per_node"].get<double>() * nodes, tissue["bytes"].get<double>());
+  EXPECT_GT(tissue["bytes_per_node"].get<double>(), 500);  // positions along the opening alone: 312
+  EXPECT_LT(tissue["bytes_per_node"].get<double>(), 6000);
+  const auto& factors = tissue["stored_factors"];
+  EXPECT_GE(factors["made"].get<int>(), 1);
+  EXPECT_GT(factors["most"].get<int>(), factors["made"].get<int>());
+  EXPECT_GT(factors["most_bytes"].get<double>(), factors["bytes"].get<double>());
+  EXPECT_LT(factors["most_bytes"].get<double>(), 1 << 30);
+  const auto text = condyle({"info", "--tissue"}).out;
+  EXPECT_NE(text.find("soft tissue: 2140 nodes"), std::string::npos) << text;
+  EXPECT_NE(text.find("stored factors: "), std::string::npos) << text;
+
+  const Folder folder;
+  const std::string faceless = box_case(folder);
+  for (const auto& [arguments, named] :
+       {std::pair{std::vector<std::string>{"info", faceless, "--tissue"}, "has no face"},
+        {{"info", folder / "maxilla.stl", "--tissue"}, "maxilla.stl is not a case"},
+        {{"info", "--surface-nodes", "600"}, "--tissue"},
+        {{"info", "--tissue", "--surface-nodes", "7"}, "--surface-nodes"}}) {
+    const auto refused = condyle(arguments);
+    EXPECT_EQ(refused.code, 2) << refused.err;
+    EXPECT_NE(refused.err.find(named), std::string::npos) << refused.err;
+  }
+}
+
 TEST(Info, ListsTheBodiesWithTheirMass) {
   const Folder folder;
   write_box_patient(folder.path());

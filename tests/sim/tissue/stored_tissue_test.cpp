@@ -6,7 +6,9 @@
 #include "sim/tissue/lips.h"
 #include "sim/tissue/model.h"
 #include "sim/tissue/path_factors.h"
+#include "sim/tissue/tissue_memory.h"
 #include "tests/sim/tissue/plain_patient.h"
+#include "tests/support/allocated.h"
 #include "tests/support/jaw_pose.h"
 #include "tests/support/program.h"
 
@@ -142,6 +144,29 @@ TEST(PathFactors, AreMadeWhenUsedAndDoNotDependOnTheOrderOfUse) {
   EXPECT_EQ(solved(*back, step), first);
   EXPECT_EQ(solved(*back, 1.49 * step), first);
   EXPECT_EQ(solved(*back, -step), solved(*back, 0));
+}
+
+TEST(TissueMemory, IsWhatTheModelHolds) {
+  const Case patient = parted_patient();
+  auto model = build_tissue(patient, {.surface_nodes = 260, .threads = 1});
+  const double step = model->opening.path->step_rad;
+  const TissueMemory at_rest = memory_of(*model);
+  EXPECT_EQ(at_rest.factors_made, 1);
+  EXPECT_EQ(at_rest.factors_most, static_cast<int>(model->opening.path->nodes.size()));
+  model->factors->nearest(step);
+  model->factors->nearest(2 * step);
+  const TissueMemory memory = memory_of(*model);
+  EXPECT_EQ(memory.factors_made, 3);
+  EXPECT_EQ(memory.tissue, at_rest.tissue);
+  EXPECT_GE(memory.factors, at_rest.factors + 2 * memory.bytes_of_a_factor);
+  EXPECT_GE(at_rest.most_factors(),
+            memory.bytes_of_a_factor * static_cast<std::size_t>(at_rest.factors_most));
+  const std::size_t before = allocated_bytes();
+  model.reset();
+  const auto freed = static_cast<double>(before - allocated_bytes());
+  const auto counted = static_cast<double>(memory.tissue + memory.displayed_face +
+                                           memory.bone_surfaces + memory.factors);
+  EXPECT_NEAR(counted, freed, 0.1 * freed);
 }
 
 }  // namespace
