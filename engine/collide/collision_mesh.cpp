@@ -1,7 +1,10 @@
 #include "engine/collide/collision_mesh.h"
 
+#include <fcl/geometry/bvh/BVH_model.h>
+#include <fcl/narrowphase/collision.h>
 #include <fcl/narrowphase/detail/traversal/collision/mesh_collision_traversal_node.h>
 #include <fcl/narrowphase/detail/traversal/collision_node.h>
+#include <fcl/narrowphase/distance.h>
 
 #include <algorithm>
 #include <array>
@@ -10,7 +13,7 @@
 #include <utility>
 
 #include "engine/collide/box_bound.h"
-#include "engine/collide/fcl_model.h"
+#include "engine/collide/plain_query.h"
 #include "engine/collide/shells.h"
 #include "engine/collide/triangle_distance.h"
 
@@ -18,6 +21,29 @@ namespace condyle {
 namespace {
 
 using Model = fcl::BVHModel<fcl::OBBd>;
+
+// The packaged library was built with an alignment of 16; wider vector flags would be incompatible.
+static_assert(alignof(fcl::Transform3d) == 16);
+
+fcl::Transform3d fcl_transform(const Pose& X) {
+  fcl::Transform3d T = fcl::Transform3d::Identity();
+  T.linear() = X.R.toRotationMatrix();
+  T.translation() = X.t;
+  return T;
+}
+
+/// Builds the tree of boxes of an empty model.
+template <class Bounds>
+void build_model(const TriMesh& mesh, fcl::BVHModel<Bounds>& model) {
+  std::vector<fcl::Triangle> triangles;
+  triangles.reserve(mesh.triangles.size());
+  for (const auto& t : mesh.triangles)
+    triangles.emplace_back(static_cast<std::size_t>(t[0]), static_cast<std::size_t>(t[1]),
+                           static_cast<std::size_t>(t[2]));
+  model.beginModel(static_cast<int>(triangles.size()), static_cast<int>(mesh.vertices.size()));
+  model.addSubModel(mesh.vertices, triangles);
+  model.endModel();
+}
 
 /// At this depth the tree is divided into regions of its surface.
 constexpr int region_depth = 6;
@@ -362,6 +388,35 @@ double overlap(const CollisionMesh& a, const Pose& X_WA, const CollisionMesh& b,
   return triangle_overlap(
       corners(a.tree().model, triangles.a),
       corners(b.tree().model, triangles.b, fcl_transform(X_WA.inverse() * X_WB)));
+}
+
+struct PlainSurface::Tree {
+  fcl::BVHModel<fcl::OBBRSSd> model;
+};
+
+PlainSurface::PlainSurface(const TriMesh& mesh) {
+  require_sound(mesh);
+  auto tree = std::make_unique<Tree>();
+  build_model(mesh, tree->model);
+  tree_ = std::move(tree);
+}
+
+PlainSurface::~PlainSurface() = default;
+
+PlainQuery plain_query(const PlainSurface& a, const Pose& X_WA, const PlainSurface& b,
+                       const Pose& X_WB, int max_contacts) {
+  const auto &model_a = a.tree().model, &model_b = b.tree().model;
+  const fcl::Transform3d X_A = fcl_transform(X_WA), X_B = fcl_transform(X_WB);
+  const fcl::CollisionRequestd collision(static_cast<std::size_t>(max_contacts), true);
+  fcl::CollisionResultd crossing;
+  fcl::collide(&model_a, X_A, &model_b, X_B, collision, crossing);
+  PlainQuery query;
+  query.contacts = static_cast<int>(crossing.numContacts());
+  if (query.contacts > 0) return query;
+  fcl::DistanceResultd nearest;
+  query.distance_mm =
+      fcl::distance(&model_a, X_A, &model_b, X_B, fcl::DistanceRequestd(true), nearest);
+  return query;
 }
 
 }  // namespace condyle

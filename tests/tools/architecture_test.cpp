@@ -76,7 +76,7 @@ const std::vector<Library> libraries = {
 bool is_system_header(const std::string& header) {
   static const std::set<std::string> known = {"unistd.h",    "signal.h", "fcntl.h", "spawn.h",
                                               "sched.h",     "poll.h",   "stdio.h", "malloc.h",
-                                              "immintrin.h", "dlfcn.h"};
+                                              "immintrin.h", "dlfcn.h",  "link.h"};
   return header.find('.') == std::string::npos && header.find('/') == std::string::npos
              ? true
              : header.starts_with("sys/") || known.contains(header);
