@@ -31,6 +31,8 @@ void make_opening_path(const Eigen::Vector3d& condyles, TissueModel& model, int 
     nodes.push_back(state.nodes);
   }
   path->nodes = std::move(nodes);
+  // Anew: without the arrays of factors that the solves needed at the same time.
+  model.factors = std::make_shared<const PathFactors>(model, threads);
 }
 
 std::shared_ptr<const TissueModel> with_planned_rest(const TissueModel& model,
