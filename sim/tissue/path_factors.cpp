@@ -18,7 +18,6 @@ PathFactors::PathFactors(const TissueModel& model, int threads)
       along_(model.opening.along),
       of_knot_(tissue_defaults::path_knots) {}
 
-/// All have the elimination order of the first, so that they do not depend on which were made.
 PathFactors::Factor PathFactors::make(std::size_t knot) const {
   BodyPoses at;
   for (const BodyId body : along_)
@@ -29,13 +28,7 @@ PathFactors::Factor PathFactors::make(std::size_t knot) const {
   set_contacts(
       find_tissue_contacts(*contact_, poses_from_mesh(planned_.get(), at.X_CB), x, threads_),
       loads);
-  const SpringPrismMesh& elements = mesh_->elements;
-  if (knot == 0)
-    return std::make_shared<HessianFactor>(elements, loads, mesh_->sheets, x, threads_);
-  auto factor = std::make_shared<HessianFactor>(of(0)->another());
-  factor->set_threads(threads_);
-  factor->refactor(elements, loads, x, threads_);
-  return factor;
+  return std::make_shared<HessianFactor>(mesh_->elements, loads, mesh_->sheets, x, threads_);
 }
 
 PathFactors::Factor PathFactors::of(std::size_t knot) const {
@@ -70,11 +63,13 @@ std::size_t PathFactors::bytes() const {
   const std::lock_guard lock(mutex_);
   std::size_t sum = 0;
   for (const Factor& factor : of_knot_)
-    if (factor) sum += factor->bytes();
-  // All share what the first one, at rest, has.
-  return of_knot_[0] ? sum + of_knot_[0]->shared_bytes() : sum;
+    if (factor) sum += factor->bytes() + factor->shared_bytes();
+  return sum;
 }
 
-std::size_t PathFactors::bytes_of_one() const { return of(0)->bytes(); }
+std::size_t PathFactors::bytes_of_one() const {
+  const Factor first = of(0);
+  return first->bytes() + first->shared_bytes();
+}
 
 }  // namespace condyle

@@ -22,9 +22,9 @@ class PathFactors {
 
   int made() const;
   int most() const;  // one for each knot of the path
-  /// Memory of those that were made, with what they share.
+  /// Memory of those that were made, with their patterns and work space.
   std::size_t bytes() const;
-  std::size_t bytes_of_one() const;  // without what they share
+  std::size_t bytes_of_one() const;
 
  private:
   using Factor = std::shared_ptr<const HessianFactor>;
