@@ -20,8 +20,9 @@ PathFactors::PathFactors(const TissueModel& model, int threads)
 
 PathFactors::Factor PathFactors::make(std::size_t knot) const {
   BodyPoses at;
-  for (const BodyId body : along_)
-    at[body] = path_->pose(static_cast<double>(knot) * path_->step_rad);
+  if (knot > 0)
+    for (const BodyId body : along_)
+      at[body] = path_->pose(static_cast<double>(knot) * path_->step_rad);
   const Nodes& rest = planned_ ? planned_->nodes : mesh_->rest;
   const Nodes& x = knot == 0 ? rest : path_->nodes[knot];
   MeshLoads loads;
