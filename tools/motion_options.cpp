@@ -180,6 +180,8 @@ SimulatorSettings simulator_settings(const MotionOptions& options, const CommonO
 
 void check_motion(const MotionOptions& options) {
   check_weakness(options.weakness);
+  if (!options.weakness.empty() && !options.tissue.simulated)
+    throw InputError("--weakness " + options.weakness.front() + ": needs the soft tissue");
   if (!options.expression.empty()) {
     check_expression(options.expression);
     if (!options.tissue.simulated)
@@ -230,7 +232,9 @@ Motion healthy_motion_of(const MotionOptions& options, const Scene& scene, int t
 
 Motion motion_of(const MotionOptions& options, const Scene& scene, int threads) {
   Motion motion = healthy_motion_of(options, scene, threads);
-  if (options.weakness.empty() || !scene.tissue) return motion;
+  if (options.weakness.empty()) return motion;
+  if (!scene.tissue)
+    throw InputError("--weakness " + options.weakness.front() + ": the patient has no face");
   const std::vector<double> strengths =
       muscle_strengths(options.weakness, face_muscles_of(*scene.tissue));
   if (!motion.expression)

@@ -67,10 +67,12 @@ std::string with_pictures(const std::string& report, const RenderMetadata& facts
   return json.dump(2) + "\n";
 }
 
-/// The same expression before the operation at the time of the report; none without a plan.
+/// The same expression before the operation at the time of the report; none without a plan, nor
+/// where an option needs the operated patient: `why` says so.
 std::optional<ExpressionMeasures> expression_before(const RecordOptions& options, const Case& uncut,
                                                     const MotionReport& report,
-                                                    SimulatorSettings settings, ProgressBar& bar) {
+                                                    SimulatorSettings settings, ProgressBar& bar,
+                                                    std::string& why) try {
   if (options.motion.plan.empty() || report.expression().findings.empty()) return std::nullopt;
   settings.face = false;
   const Scene before = make_scene(uncut, settings, bar.callback());
@@ -79,6 +81,9 @@ std::optional<ExpressionMeasures> expression_before(const RecordOptions& options
                     options.motion.respect_contact);
   const double time_s = std::min(report.expression_time_s(), playback.motion().duration_s);
   return expression_measures(before, playback.at(time_s).tissue);
+} catch (const InputError& error) {
+  why = std::string("the expression before the operation was not measured: ") + error.what();
+  return std::nullopt;
 }
 
 /// Writes expression.csv, and puts the state before into the report.
@@ -164,7 +169,8 @@ int run_record(const RecordOptions& options, const CommonOptions& common) {
     bar.show(fmt::format("frame {} of {}", i + 1, times.count), (i + 1.0) / times.count);
   }
   if (pictures) pictures->wait();
-  const auto before = expression_before(options, patient, report, settings, bar);
+  std::string not_before;
+  const auto before = expression_before(options, patient, report, settings, bar, not_before);
   bar.clear();
   trace.finish();
   std::string json = report.json();
@@ -182,6 +188,7 @@ int run_record(const RecordOptions& options, const CommonOptions& common) {
   if (common.json) fmt::print("{}", json);
   if (common.prints_summary()) {
     for (const auto& note : motion.notes) fmt::print(stderr, "note: {}\n", note);
+    if (!not_before.empty()) fmt::print(stderr, "note: {}\n", not_before);
     if (const auto lacks = pictures ? pictures->facts().shortfall() : ""; !lacks.empty())
       fmt::print(stderr, "note: {}; --edges fxaa or --supersample 2 smooth them\n", lacks);
     fmt::print(stderr, "{}{}", report.text(),

@@ -17,6 +17,7 @@ constexpr int overflow_rounds = 3, overflow_neighbours = 4;
 constexpr double thinnest_metal_mm = 2;  // bright and thinner: enamel, or a streak
 constexpr double beside_metal_mm = 1;    // rays this near to it are interpolated, too
 constexpr double pixel_mm = 0.9;         // of the pixels that are projected, about
+constexpr int most_pixels = 12;          // of such distances, in very fine scans
 constexpr double in_trace = 0.3;         // of a pixel: so much metal lies on a ray through it
 constexpr int directions_per_pixel = 2;  // of a slice's width, over half a turn
 
@@ -159,8 +160,9 @@ void subtract_interpolated(const Projections& metal, Projections& sums) {
 Mask spread(const Mask& mask, const SliceLattice& lattice, double mm, bool all) {
   std::array<int, 2> reach;
   for (std::size_t a = 0; a < 2; ++a)
-    reach[a] = std::max(
-        1, static_cast<int>(std::lround(mm / lattice.spacing_mm[static_cast<Eigen::Index>(a)])));
+    reach[a] = std::clamp(
+        static_cast<int>(std::lround(mm / lattice.spacing_mm[static_cast<Eigen::Index>(a)])), 0,
+        most_pixels);
   Mask result(mask.size(), all ? 1 : 0);
   for (int y = 0; y < lattice.size[1]; ++y)
     for (int x = 0; x < lattice.size[0]; ++x) {
@@ -182,9 +184,11 @@ class MetalSlice {
  public:
   MetalSlice(const Volume& volume, const SliceLattice& lattice, int slice, int level_hu)
       : lattice_(lattice), level_hu_(level_hu), values_(lattice.pixels()) {
+    // About square, since neighbouring rays lie a pixel apart.
+    const double coarse_mm = std::max({pixel_mm, lattice.spacing_mm[0], lattice.spacing_mm[1]});
     for (std::size_t a = 0; a < 2; ++a)
       block_[a] = std::max(1, static_cast<int>(std::lround(
-                                  pixel_mm / lattice.spacing_mm[static_cast<Eigen::Index>(a)])));
+                                  coarse_mm / lattice.spacing_mm[static_cast<Eigen::Index>(a)])));
     for (std::size_t p = 0; p < values_.size(); ++p) {
       const auto at = lattice.place(p, slice);
       values_[p] = volume.at(at[0], at[1], at[2]);

@@ -17,6 +17,7 @@ int slice_axis(const Volume& volume) {
 }
 
 int metal_level(const Volume& volume) {
+  if (volume.values.empty()) return enamel_end_hu;
   const int saturated = *std::max_element(volume.values.begin(), volume.values.end());
   if (saturated < enamel_end_hu && saturated >= least_saturated_hu)
     return saturated - saturation_slack_hu;  // the scanner's range ends there

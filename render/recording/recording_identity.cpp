@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "engine/core/hash.h"
+#include "sim/case/face_muscle_table.h"
 #include "sim/case/tissue_plan_file.h"
 
 namespace condyle {
@@ -64,10 +65,13 @@ std::string contact_text(const ContactSettings& settings, bool respect_contact) 
   return text;
 }
 
-std::string tissue_text(const SimulatorSettings& settings, const Case& patient) {
+std::string tissue_text(const SimulatorSettings& settings, const Case& patient,
+                        const TissueModel* tissue) {
   if (!settings.tissue) return "none";
   const TissuePlan plan = overlaid(patient.tissue, settings.tissue_model.plan);
-  return fmt::format("{} {}", settings.tissue_model.surface_nodes, tissue_plan_json(plan).dump());
+  const std::string muscles = tissue ? face_muscles_csv(face_muscles_of(*tissue)) : "";
+  return fmt::format("{} {} {}", settings.tissue_model.surface_nodes, tissue_plan_json(plan).dump(),
+                     hash_text(hash_bytes(muscles.data(), muscles.size(), hash_start)));
 }
 
 }  // namespace
@@ -80,7 +84,7 @@ RecordingSheet recording_identity(const Scene& scene, const Motion& motion,
       {"case", hash_text(case_hash(scene.patient))},
       {"motion", motion.name + " " + hash_text(motion_hash(motion, times_s, settings.step_s))},
       {"contact", contact_text(settings.contact, respect_contact)},
-      {"tissue", tissue_text(settings, scene.patient)}};
+      {"tissue", tissue_text(settings, scene.patient, scene.tissue.get())}};
   if (scene.plan) sheet["plan"] = scene.plan->name + " " + scene.plan->hash;
   return sheet;
 }

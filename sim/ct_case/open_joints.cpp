@@ -51,17 +51,18 @@ Part* part_of(Case& patient, Role role) {
 double open_joints(Case& patient) {
   Part *const skull = part_of(patient, Role::skull), *const jaw = part_of(patient, Role::mandible);
   if (!skull || !jaw) return 0;
+  const auto left = patient.landmarks.find("left_condyle"),
+             right = patient.landmarks.find("right_condyle");
+  if (!left || !right) return 0;
   std::vector<Vector3d> skull_total(skull->mesh.vertices.size(), Vector3d::Zero()),
       jaw_total(jaw->mesh.vertices.size(), Vector3d::Zero());
   for (int round = 1; round <= rounds && !JointSurfaces::find(patient); ++round) {
     const TriangleTree skull_tree(skull->mesh), jaw_tree(jaw->mesh);
     bool touches = false;
-    for (const char* name : {"left_condyle", "right_condyle"}) {
-      const auto condyle = patient.landmarks.find(name);
-      if (!condyle) return 0;
+    for (const Vector3d& condyle : {*left, *right}) {
       const double margin_mm = round * margin_step_mm;
-      const Shifts of_jaw = shifts_from(jaw->mesh, skull_tree, *condyle, margin_mm),
-                   of_skull = shifts_from(skull->mesh, jaw_tree, *condyle, margin_mm);
+      const Shifts of_jaw = shifts_from(jaw->mesh, skull_tree, condyle, margin_mm),
+                   of_skull = shifts_from(skull->mesh, jaw_tree, condyle, margin_mm);
       touches |= !of_jaw.empty() || !of_skull.empty();
       apply(of_jaw, jaw->mesh, jaw_total);
       apply(of_skull, skull->mesh, skull_total);

@@ -54,7 +54,7 @@ void FaceMovements::finish(Motion& motion, const Case& patient) const {
     throw InputError(motion.name +
                      ": the patient has no muscles of the face for its expressions: the landmark " +
                      mark + " is missing");
-  motion.expression = expression_through(motion.name, keys_, default_face_muscles(patient)).at;
+  motion.expression = expression_through(motion.name, keys_, muscles_of_face(patient)).at;
 }
 
 }  // namespace condyle

@@ -108,7 +108,7 @@ Scene scene_with_contact(const OperatedPatient& after, const SimulatorSettings& 
 PredictionSettings prediction_settings(const Case& uncut, const SimulatorSettings& settings) {
   PredictionSettings of{
       .tissue = settings.tissue_model, .threads = settings.threads, .stripping = {}};
-  of.tissue.face_muscles = default_face_muscles(uncut);
+  of.tissue.face_muscles = muscles_of_face(uncut);
   return of;
 }
 

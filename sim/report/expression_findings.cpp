@@ -104,12 +104,16 @@ std::optional<MarginsOfLips> margins_of_lips(const Scene& scene, const TissueSta
       find_mouth(face->mesh, scene.patient.landmarks, 0.5 * (*upper + *lower));
   if (!mouth.found()) return std::nullopt;
   const LipSurfaces lips = lip_surfaces(face->mesh, mouth);
+  if (lips.upper.empty() || lips.lower.empty()) return std::nullopt;
   const auto margins = [&](const TissueState& state) {
     std::vector<Eigen::Vector3f> vertices;
     deform_face(*scene.tissue, state, vertices);
     return lip_margins(lips, vertices);
   };
-  return MarginsOfLips{margins(at_rest), margins(tissue)};
+  MarginsOfLips both{margins(at_rest), margins(tissue)};
+  if (both.rest.left_x <= both.rest.right_x || both.now.left_x <= both.now.right_x)
+    return std::nullopt;
+  return both;
 }
 
 }  // namespace

@@ -36,7 +36,10 @@ TEST(StoredOcclusion, IsTheSameAndMadeAgainWhereDamaged) {
   expect_same();
   const fs::path file = fs::directory_iterator(cache.path())->path();
   const std::string whole = read_file(file);
+  const test::Folder links;
+  fs::create_hard_link(file, links.path() / "link");
   expect_same();
+  EXPECT_EQ(fs::hard_link_count(file), 2u) << "read; a file that is made again replaces it";
   std::string damaged = whole;
   damaged[100] ^= 1;
   write_file(file, damaged);
