@@ -159,10 +159,12 @@ void subtract_interpolated(const Projections& metal, Projections& sums) {
 /// Pixels whose neighbours up to a distance are all in the mask, or one of them is.
 Mask spread(const Mask& mask, const SliceLattice& lattice, double mm, bool all) {
   std::array<int, 2> reach;
-  for (std::size_t a = 0; a < 2; ++a)
-    reach[a] = std::clamp(
-        static_cast<int>(std::lround(mm / lattice.spacing_mm[static_cast<Eigen::Index>(a)])), 0,
-        most_pixels);
+  for (std::size_t a = 0; a < 2; ++a) {
+    const double pixels = mm / lattice.spacing_mm[static_cast<Eigen::Index>(a)];
+    // Of fine pixels never more than that distance, lest small metal be lost.
+    reach[a] = static_cast<int>(all && pixels >= 1 ? std::floor(pixels) : std::round(pixels));
+    reach[a] = std::min(reach[a], most_pixels);
+  }
   Mask result(mask.size(), all ? 1 : 0);
   for (int y = 0; y < lattice.size[1]; ++y)
     for (int x = 0; x < lattice.size[0]; ++x) {

@@ -192,6 +192,19 @@ TEST(MetalArtifacts, OblongAndFinePixelsAreCorrectedInBoundedTime) {
   reduce_metal_artifacts(extreme, 2);
 }
 
+TEST(MetalArtifacts, ASmallFillingIsFoundInPixelsOfAnySize) {
+  for (const double mm : {0.3, 0.45, 0.6, 0.8, 1.0}) {
+    const int across = static_cast<int>(40 / mm);
+    Volume scan;
+    scan.size = {across, across, 1};
+    scan.spacing_mm = {mm, mm, 1};
+    for (int j = 0; j < across; ++j)
+      for (int i = 0; i < across; ++i)
+        scan.values.push_back(std::hypot(mm * i - 20, mm * j - 20) < 2 ? 3071 : 50);
+    EXPECT_TRUE(reduce_metal_artifacts(scan, 1)) << mm;
+  }
+}
+
 TEST(MetalArtifacts, ManyThreadsGiveTheSameBitsAndTheWorkCanBeCancelled) {
   const Volume scan = filled_scan();
   EXPECT_EQ(reduce_metal_artifacts(scan, 1)->volume.values,
