@@ -11,6 +11,7 @@
 #include "engine/core/error.h"
 #include "engine/core/files.h"
 #include "engine/core/text_table.h"
+#include "sim/case/table_row.h"
 
 namespace condyle {
 namespace {
@@ -40,55 +41,6 @@ const std::vector<std::pair<const char*, const char*>>& face_kinds() {
   return all;
 }
 
-/// The fields of one row by column.
-class FaceRow {
- public:
-  FaceRow(const std::filesystem::path& file, const TextLines& lines,
-          const std::map<std::string, std::size_t>& columns)
-      : file_(file),
-        where_(lines.where()),
-        columns_(columns),
-        fields_(fields_of(lines.line(), ',')) {
-    if (fields_.size() < columns.size())
-      throw InputError(file, where_,
-                       fmt::format("{} values instead of {}; the file may be cut off",
-                                   fields_.size(), columns.size()));
-  }
-  std::string text(const char* column) const {
-    const auto at = columns_.find(column);
-    return at == columns_.end() ? "" : std::string(fields_[at->second]);
-  }
-  double number(const char* column, double low, double high) const {
-    const double value = parse_number(file_, where_ + ", " + column, text(column));
-    if (!(value >= low && value <= high))
-      refuse(column, fmt::format("{} is not between {} and {}", value, low, high));
-    return value;
-  }
-  double number_or(const char* column, double by_default, double low, double high) const {
-    return text(column).empty() ? by_default : number(column, low, high);
-  }
-  /// `value` of the choice whose name is in the column.
-  template <class T>
-  T chosen(const char* column, const std::vector<std::pair<const char*, T>>& choices) const {
-    const std::string given = lower_case(text(column));
-    std::string known;
-    for (const auto& [name, value] : choices) {
-      if (given == name) return value;
-      if (*name) known += (known.empty() ? "" : ", ") + std::string(name);
-    }
-    refuse(column, "\"" + shortened(text(column)) + "\" is not one of " + known);
-  }
-  [[noreturn]] void refuse(const char* column, const std::string& problem) const {
-    throw InputError(file_, where_ + ", " + column, problem);
-  }
-
- private:
-  const std::filesystem::path& file_;
-  std::string where_;
-  const std::map<std::string, std::size_t>& columns_;
-  std::vector<std::string_view> fields_;
-};
-
 std::map<std::string, std::size_t> face_columns(const std::filesystem::path& file,
                                                 const TextLines& lines) {
   std::map<std::string, std::size_t> columns;
@@ -107,7 +59,7 @@ std::map<std::string, std::size_t> face_columns(const std::filesystem::path& fil
   return columns;
 }
 
-std::string kind_of(const FaceRow& row) {
+std::string kind_of(const TableRow& row) {
   const std::string given = lower_case(row.text("muscle"));
   for (const auto& [kind, abbreviation] : face_kinds())
     if (given == kind || given == abbreviation) return kind;
@@ -120,7 +72,7 @@ std::string kind_of(const FaceRow& row) {
   return given;
 }
 
-FaceMusclePoint point_of(const FaceRow& row) {
+FaceMusclePoint point_of(const TableRow& row) {
   FaceMusclePoint point{.depth = std::nullopt};
   constexpr std::array<const char*, 3> axes = {"x_mm", "y_mm", "z_mm"};
   for (int k = 0; k < 3; ++k)
@@ -142,7 +94,7 @@ class FaceTableReader {
  public:
   explicit FaceTableReader(const std::filesystem::path& file) : file_(file) {}
 
-  void add(const FaceRow& row) {
+  void add(const TableRow& row) {
     const std::string kind = kind_of(row);
     const auto side = row.chosen<const char*>(
         "side", {{"left", "left"}, {"right", "right"}, {"both", ""}, {"", ""}});
@@ -181,7 +133,7 @@ class FaceTableReader {
 
  private:
   /// A new muscle, or that of earlier rows if they agree.
-  FaceMuscle& muscle_called(const std::string& name, const std::string& kind, const FaceRow& row) {
+  FaceMuscle& muscle_called(const std::string& name, const std::string& kind, const TableRow& row) {
     FaceMuscle muscle{.name = name, .kind = kind, .lines = {}};
     muscle.limit_N = row.number_or("max_force_N", 0, 0, strongest_face_N);
     muscle.shortening = row.number_or("shortening", 0, 0, most_shortening);
@@ -236,7 +188,7 @@ FaceMuscleTable read_face_muscles(const std::filesystem::path& file) {
   for (std::size_t rows = 0; lines.next_filled(); ++rows) {
     if (rows == max_face_points)
       throw InputError(file, lines.where(), fmt::format("more than {} points", max_face_points));
-    reader.add(FaceRow(file, lines, columns));
+    reader.add(TableRow(file, lines, columns));
   }
   return {.muscles = std::move(reader).muscles(), .has_bodies = columns.contains("body")};
 }

@@ -11,6 +11,7 @@
 #include "engine/core/error.h"
 #include "engine/core/files.h"
 #include "engine/core/text_table.h"
+#include "sim/case/table_row.h"
 
 namespace condyle {
 namespace {
@@ -50,45 +51,6 @@ const char* body_name(MuscleBody body) {
   }
 }
 
-/// One row with the indices of its columns.
-class Row {
- public:
-  Row(const std::filesystem::path& file, const TextLines& lines,
-      const std::map<std::string, std::size_t>& columns)
-      : file_(file),
-        where_(lines.where()),
-        columns_(columns),
-        fields_(fields_of(lines.line(), ',')) {
-    if (fields_.size() < columns.size())
-      throw InputError(file, where_,
-                       fmt::format("{} values instead of {}; the file may be cut off",
-                                   fields_.size(), columns.size()));
-  }
-  std::string text(const std::string& column) const {
-    const auto at = columns_.find(column);
-    return at == columns_.end() ? "" : std::string(fields_[at->second]);
-  }
-  double number(const std::string& column, double low, double high) const {
-    const double value = parse_number(file_, item(column), text(column));
-    if (!(value >= low && value <= high))
-      refuse(column, fmt::format("{} is not between {} and {}", value, low, high));
-    return value;
-  }
-  double number_or(const std::string& column, double by_default, double low, double high) const {
-    return text(column).empty() ? by_default : number(column, low, high);
-  }
-  [[noreturn]] void refuse(const std::string& column, const std::string& problem) const {
-    throw InputError(file_, item(column), problem);
-  }
-
- private:
-  std::string item(const std::string& column) const { return where_ + ", " + column; }
-  const std::filesystem::path& file_;
-  std::string where_;
-  const std::map<std::string, std::size_t>& columns_;
-  std::vector<std::string_view> fields_;
-};
-
 std::map<std::string, std::size_t> read_header(const std::filesystem::path& file,
                                                const TextLines& lines) {
   std::map<std::string, std::size_t> columns;
@@ -110,7 +72,7 @@ std::map<std::string, std::size_t> read_header(const std::filesystem::path& file
 }
 
 /// Absent for a muscle of bodies that are not simulated.
-std::optional<Muscle> read_muscle(const Row& row) {
+std::optional<Muscle> read_muscle(const TableRow& row) {
   Muscle m;
   m.name = row.text("name");
   if (m.name.empty()) row.refuse("name", "is empty");
@@ -166,7 +128,7 @@ std::vector<Muscle> read_muscles(const std::filesystem::path& file,
   std::string left_out;
   int idle = 0;
   while (lines.next_filled()) {
-    const Row row(file, lines, columns);
+    const TableRow row(file, lines, columns);
     const auto muscle = read_muscle(row);
     const std::string name = row.text("name");
     if (!names.insert(name).second)
