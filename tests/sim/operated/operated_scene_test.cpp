@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "sim/frame/body_poses.h"
+#include "sim/muscles/default_face_muscles.h"
 #include "sim/muscles/expression.h"
 #include "sim/prediction/prediction.h"
 #include "sim/tissue/model.h"
@@ -58,6 +59,19 @@ TEST(OperatedScene, TheChinOpensWithTheJawAboutTheSameCondyles) {
       1e-9);
   ASSERT_TRUE(scene.plan);
   EXPECT_EQ(scene.plan->name, "test");
+}
+
+TEST(OperatedScene, TheOperatedFaceKeepsTheMusclesThatTheCaseBrings) {
+  Case patient = test::builtin();
+  FaceMuscle own{.name = "left_risorius", .kind = "risorius", .limit_N = 1.25, .lines = {}};
+  own.lines = {{{.at = {60, -60, -50}, .depth = 0.5}, {.at = {26, -88, -50}, .depth = 0.5}}};
+  patient.face_muscles = {own};
+  const Scene scene = make_operated_scene(patient, chin_plan());
+  const auto& muscles = face_muscles_of(*scene.tissue);
+  const auto expected = muscles_of_face(patient);
+  ASSERT_EQ(muscles.size(), expected.size());
+  for (std::size_t m = 0; m < muscles.size(); ++m) EXPECT_EQ(muscles[m].name, expected[m].name);
+  EXPECT_EQ(muscles.front().limit_N, 1.25);
 }
 
 TEST(OperatedScene, TheOperatedFaceSmilesByMusclesOnItsPieces) {
