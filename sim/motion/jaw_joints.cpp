@@ -21,9 +21,10 @@ constexpr double side_shift_length_mm = 1;
 Vector3d needed(const Case& patient, const char* name) {
   const auto point = patient.landmarks.find(name);
   if (!point)
-    throw InputError(
-        fmt::format("{}: the built-in motions need the landmark {}; add it to the case's landmarks",
-                    patient.name, name));
+    throw InputError(fmt::format(
+        "{}: the built-in motions need the landmark {}; {}", patient.name, name,
+        patient.find(Role::mandible) ? "add it to the case's landmarks"
+                                     : "the case has no mandible, which they would move"));
   return *point;
 }
 

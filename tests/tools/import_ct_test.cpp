@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <regex>
 
+#include "engine/core/files.h"
 #include "engine/dicom/write_ct_series.h"
 #include "engine/volume/volume_files.h"
 #include "tests/support/program.h"
@@ -111,6 +112,14 @@ TEST(ImportCt, ARealHeadWithFillingsOpensItsMouth) {
   const std::string patient = folder / "head";
   const auto made = condyle({"import", "ct", scan.string(), "--out", patient});
   ASSERT_EQ(made.code, 0) << made.err;
+  EXPECT_NE(made.err.find("metal artifacts were reduced"), std::string::npos) << made.err;
+  // Read off the slices in which the lower incisors are seen apart, 2 mm thick.
+  const std::string marks = read_file(patient + "/landmarks.csv");
+  std::smatch edge;
+  ASSERT_TRUE(std::regex_search(
+      marks, edge, std::regex("lower_incisal_point,([-0-9.]+),([-0-9.]+),([-0-9.]+)")));
+  EXPECT_NEAR(std::stod(edge[2]), -101, 4);
+  EXPECT_NEAR(std::stod(edge[3]), -21, 4);
   const auto checked = condyle({"check", patient, "--motion", "open"});
   ASSERT_EQ(checked.code, 0) << checked.err;  // bones never overlap
   std::smatch opening;
@@ -122,6 +131,34 @@ TEST(ImportCt, ARealHeadWithFillingsOpensItsMouth) {
       condyle({"run", patient, "--motion", "open 40", "--frames", "4", "--out", folder / "opened"});
   ASSERT_EQ(opened.code, 0) << opened.err;
   EXPECT_TRUE(fs::exists(folder / "opened/trace.csv"));
+  // With a Le Fort I on it.
+  const std::string plan = folder / "plan.json";
+  for (const std::vector<std::string>& step :
+       {std::vector<std::string>{"plan", "new", patient, "--out", plan},
+        {"plan", "cut", plan, "le_fort_1", "--case", patient},
+        {"plan", "move", plan, "maxilla", "forward", "4", "--case", patient},
+        {"run", patient, "--plan", plan, "--motion", "open 20", "--frames", "2", "--out",
+         folder / "planned"}}) {
+    const auto done = condyle(step);
+    ASSERT_EQ(done.code, 0) << done.err;
+  }
+}
+
+TEST(ImportCt, ARealHeadWithoutALowerJawIsReportedAndViewed) {
+  const fs::path scan = real_data() / "ct-cranium" / "cranium_ct.nrrd";
+  if (!fs::exists(scan)) GTEST_SKIP() << "real anatomy absent";
+  const Folder folder;
+  const std::string patient = folder / "cranium";
+  const auto made = condyle({"import", "ct", scan.string(), "--out", patient});
+  ASSERT_EQ(made.code, 0) << made.err;
+  EXPECT_NE(made.err.find("no lower jaw"), std::string::npos) << made.err;
+  EXPECT_TRUE(fs::exists(patient + "/skull.ply"));
+  EXPECT_FALSE(fs::exists(patient + "/mandible.ply"));
+  EXPECT_EQ(condyle({"info", patient}).code, 0);
+  const auto moved =
+      condyle({"run", patient, "--motion", "open", "--out", folder / "moved", "--no-tissue"});
+  EXPECT_EQ(moved.code, 2);
+  EXPECT_NE(moved.err.find("mandible"), std::string::npos) << moved.err;
 }
 
 }  // namespace
