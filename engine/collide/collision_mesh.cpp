@@ -2,8 +2,6 @@
 
 #include <fcl/geometry/bvh/BVH_model.h>
 #include <fcl/narrowphase/collision.h>
-#include <fcl/narrowphase/detail/traversal/collision/mesh_collision_traversal_node.h>
-#include <fcl/narrowphase/detail/traversal/collision_node.h>
 #include <fcl/narrowphase/distance.h>
 
 #include <algorithm>
@@ -50,10 +48,15 @@ constexpr int region_depth = 6;
 constexpr int region_count = 1 << region_depth;
 
 struct Surface {
-  Model model;
+  std::vector<Eigen::Vector3d> vertices;
+  std::vector<Eigen::Vector3i> triangles;
   std::vector<BoxPair> boxes;  // the root alone, then the children of each inner node
-  double reach_mm = 0;         // no corner of a box is farther from the origin
-  std::vector<int> region;     // of each node; -1 above the cut
+  std::vector<std::array<signed char, 2>> region;  // of each box; -1 above the cut
+  double reach_mm = 0;                             // no corner of a box is farther from the origin
+
+  bool has(int triangle) const {
+    return triangle >= 0 && static_cast<std::size_t>(triangle) < triangles.size();
+  }
 };
 
 /// Contents of a box: a triangle, or the index of its children's boxes.
@@ -61,33 +64,36 @@ int holding_triangle(int triangle) { return -1 - triangle; }
 bool holds_triangle(int held) { return held < 0; }
 int held_triangle(int held) { return -1 - held; }
 
-void describe_nodes(Surface& surface, int node, int depth, int region, std::size_t boxes,
-                    int which) {
-  const auto& bv = surface.model.getBV(node);
+/// Copies a node of FCL's tree and all below it to the boxes.
+void describe_nodes(const Model& model, Surface& surface, int node, int depth, int region,
+                    std::size_t boxes, int which) {
+  const auto& bv = model.getBV(node);
   const auto& box = bv.bv;
   const int held =
       bv.isLeaf() ? holding_triangle(bv.primitiveId()) : static_cast<int>(surface.boxes.size());
   surface.boxes[boxes].set(which, box.To, box.extent, box.axis, held);
   surface.reach_mm = std::max(surface.reach_mm, box.To.norm() + box.extent.norm());
-  surface.region[node] = depth >= region_depth ? region % region_count : -1;
+  surface.region[boxes][static_cast<std::size_t>(which)] =
+      static_cast<signed char>(depth >= region_depth ? region % region_count : -1);
   if (bv.isLeaf()) return;
   // The path from the root, as bits, is the index of the region.
   const int next = depth < region_depth ? 2 * region : region;
   const std::size_t inner = surface.boxes.size();
   surface.boxes.emplace_back();
-  describe_nodes(surface, bv.leftChild(), depth + 1, next, inner, 0);
-  describe_nodes(surface, bv.rightChild(), depth + 1, depth < region_depth ? next + 1 : next, inner,
-                 1);
+  surface.region.emplace_back();
+  describe_nodes(model, surface, bv.leftChild(), depth + 1, next, inner, 0);
+  describe_nodes(model, surface, bv.rightChild(), depth + 1, depth < region_depth ? next + 1 : next,
+                 inner, 1);
 }
 
-Triangle corners(const Model& model, int triangle) {
-  const fcl::Triangle& t = model.tri_indices[triangle];
-  return {model.vertices[t[0]], model.vertices[t[1]], model.vertices[t[2]]};
+Triangle corners(const Surface& surface, int triangle) {
+  const Eigen::Vector3i& t = surface.triangles[static_cast<std::size_t>(triangle)];
+  return {surface.vertices[t[0]], surface.vertices[t[1]], surface.vertices[t[2]]};
 }
 
-Triangle corners(const Model& model, int triangle, const fcl::Transform3d& X) {
-  const fcl::Triangle& t = model.tri_indices[triangle];
-  return {X * model.vertices[t[0]], X * model.vertices[t[1]], X * model.vertices[t[2]]};
+Triangle corners(const Surface& surface, int triangle, const fcl::Transform3d& X) {
+  const Eigen::Vector3i& t = surface.triangles[static_cast<std::size_t>(triangle)];
+  return {X * surface.vertices[t[0]], X * surface.vertices[t[1]], X * surface.vertices[t[2]]};
 }
 
 /// A range of a node's boxes: from..to - 1.
@@ -123,16 +129,15 @@ class NearestPair {
   /// start: the pair measured first, where valid. Only distances below the bound count.
   NearestPair(const Surface& a, const Surface& b, const fcl::Transform3d& X, TrianglePair start,
               double bound_mm2)
-      : a_(a.model),
-        b_(b.model),
+      : a_(a),
+        b_(b),
         boxes_a_(a.boxes.data()),
         boxes_b_(b.boxes.data()),
         X_(X),
         turned_(X.linear(), X.translation(), a.reach_mm + b.reach_mm) {
     best.squared_mm2 = bound_mm2;
     best_mm = std::sqrt(bound_mm2);
-    if (start.a >= 0 && start.a < a_.num_tris && start.b >= 0 && start.b < b_.num_tris)
-      measure(start);
+    if (a_.has(start.a) && b_.has(start.b)) measure(start);
     visit({boxes_a_, 0, 1}, {boxes_b_, 0, 1});
   }
 
@@ -197,8 +202,8 @@ class NearestPair {
     return low - high - turned_.uncertain_mm;
   }
 
-  const Model& a_;
-  const Model& b_;
+  const Surface& a_;
+  const Surface& b_;
   const BoxPair *boxes_a_, *boxes_b_;
   fcl::Transform3d X_;  // of B in A
   BoxTransform turned_;
@@ -214,8 +219,8 @@ class PathContactTest {
  public:
   PathContactTest(const Surface& a, const Surface& b, const fcl::Transform3d& X,
                   const BodyPath& path, double min_distance_mm)
-      : a_(a.model),
-        b_(b.model),
+      : a_(a),
+        b_(b),
         boxes_a_(a.boxes.data()),
         boxes_b_(b.boxes.data()),
         X_(X),
@@ -225,7 +230,7 @@ class PathContactTest {
 
   bool found() const { return visit({boxes_a_, 0, 1}, {boxes_b_, 0, 1}); }
   bool found_at(TrianglePair pair) const {
-    if (pair.a < 0 || pair.a >= a_.num_tris || pair.b < 0 || pair.b >= b_.num_tris) return false;
+    if (!a_.has(pair.a) || !b_.has(pair.b)) return false;
     double longest = 0;
     for (const Eigen::Vector3d& p : corners(b_, pair.b))
       longest = std::max(longest, path_.length(p));
@@ -262,8 +267,8 @@ class PathContactTest {
            static_cast<double>(turned_.uncertain_mm);
   }
 
-  const Model& a_;
-  const Model& b_;
+  const Surface& a_;
+  const Surface& b_;
   const BoxPair *boxes_a_, *boxes_b_;
   fcl::Transform3d X_;  // of B in A
   BoxTransform turned_;
@@ -271,22 +276,46 @@ class PathContactTest {
   double min_distance_mm_;
 };
 
-/// Collects crossing triangles, in each region of A at most `per_region`.
-class CrossingPairs final : public fcl::detail::MeshCollisionTraversalNodeOBB<double> {
+/// Collects crossing triangles, in each region of A at most `per_region`. The same traversal; in
+/// the coordinates of A.
+class CrossingPairs {
  public:
-  CrossingPairs(const Surface& a, const Surface& b, const fcl::Transform3d& X, std::size_t total,
-                int per_region)
-      : a_(a.model), b_(b.model), region_(a.region), X_(X), total_(total), per_region_(per_region) {
-    fcl::detail::initialize(*this, a_, fcl::Transform3d::Identity(), b_, X, request_, result_);
+  CrossingPairs(const Surface& a, const Surface& b, const fcl::Transform3d& X, ContactLimits limits)
+      : a_(a),
+        b_(b),
+        boxes_a_(a.boxes.data()),
+        boxes_b_(b.boxes.data()),
+        X_(X),
+        turned_(X.linear(), X.translation(), a.reach_mm + b.reach_mm),
+        total_(static_cast<std::size_t>(std::max(limits.total, 0))),
+        per_region_(limits.per_region) {
+    if (total_ > 0 && per_region_ > 0) visit({boxes_a_, 0, 1}, {boxes_b_, 0, 1});
   }
 
-  bool BVTesting(int node_a, int node_b) const override {
-    const int region = region_[node_a];
-    if (region >= 0 && count_[region] >= per_region_) return true;  // full: skipped
-    return MeshCollisionTraversalNodeOBB::BVTesting(node_a, node_b);
+  std::vector<MeshContact> found;
+
+ private:
+  void visit(const ChildRange& a, const ChildRange& b) {
+    const FourFloats gaps = gap_bounds(*a.boxes, *b.boxes, turned_);
+    for (int i = a.from; i < a.to; ++i)
+      for (int k = b.from; k < b.to && found.size() < total_; ++k)
+        if (!(gaps[2 * i + k] > 0) && !is_full(a, i)) open(a.one(i), b.one(k));
   }
-  void leafTesting(int node_a, int node_b) const override {
-    const TrianglePair pair{a_.getBV(node_a).primitiveId(), b_.getBV(node_b).primitiveId()};
+  void open(const ChildRange& a, const ChildRange& b) {
+    const int held_a = a.held(a.from), held_b = b.held(b.from);
+    if (holds_triangle(held_a) && holds_triangle(held_b))
+      return test({held_triangle(held_a), held_triangle(held_b)}, region(a, a.from));
+    const auto [in_a, in_b] = opened(a, b, boxes_a_, boxes_b_);
+    visit(in_a, in_b);
+  }
+  int region(const ChildRange& a, int i) const {
+    return a_.region[static_cast<std::size_t>(a.boxes - boxes_a_)][static_cast<std::size_t>(i)];
+  }
+  bool is_full(const ChildRange& a, int i) const {
+    const int at = region(a, i);
+    return at >= 0 && count_[at] >= per_region_;
+  }
+  void test(TrianglePair pair, int at) {
     const Triangle ta = corners(a_, pair.a), tb = corners(b_, pair.b, X_);
     const TriangleCrossing crossing = triangle_crossing(ta, tb);
     if (!crossing.crosses) return;
@@ -299,22 +328,17 @@ class CrossingPairs final : public fcl::detail::MeshCollisionTraversalNodeOBB<do
     if (contact.normal.squaredNorm() < 0.5) contact.normal = Eigen::Vector3d::UnitZ();
     contact.triangles = pair;
     found.push_back(contact);
-    if (region_[node_a] >= 0) ++count_[region_[node_a]];
+    if (at >= 0) ++count_[at];
   }
-  bool canStop() const override { return found.size() >= total_; }
 
-  mutable std::vector<MeshContact> found;
-
- private:
-  const Model& a_;
-  const Model& b_;
-  const std::vector<int>& region_;
-  fcl::Transform3d X_;
+  const Surface& a_;
+  const Surface& b_;
+  const BoxPair *boxes_a_, *boxes_b_;
+  fcl::Transform3d X_;  // of B in A
+  BoxTransform turned_;
   std::size_t total_;
   int per_region_;
-  mutable std::array<int, region_count> count_{};
-  fcl::CollisionRequestd request_;
-  fcl::CollisionResultd result_;
+  std::array<int, region_count> count_{};
 };
 
 }  // namespace
@@ -325,12 +349,15 @@ CollisionMesh::CollisionMesh(const TriMesh& mesh) : tree_(std::make_unique<Tree>
   require_sound(mesh);
   for (const auto& t : mesh.triangles)
     for (const int v : t) box_.add(mesh.vertices[static_cast<std::size_t>(v)]);
-  Model& model = tree_->model;
+  Model model;
   build_model(mesh, model);
-  tree_->region.resize(static_cast<std::size_t>(model.getNumBVs()));
+  tree_->vertices = mesh.vertices;
+  tree_->triangles = mesh.triangles;
   tree_->boxes.reserve(mesh.triangles.size());
+  tree_->region.reserve(mesh.triangles.size());
   tree_->boxes.emplace_back();
-  describe_nodes(*tree_, 0, 0, 0, 0, 0);
+  tree_->region.emplace_back();
+  describe_nodes(model, *tree_, 0, 0, 0, 0, 0);
 }
 
 CollisionMesh::~CollisionMesh() = default;
@@ -355,6 +382,16 @@ std::optional<MeshDistance> distance_within(double reach_mm, const CollisionMesh
                       nearest.triangles};
 }
 
+double triangle_gap(const CollisionMesh& a, const Pose& X_WA, const CollisionMesh& b,
+                    const Pose& X_WB, TrianglePair triangles) {
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  if (!a.tree().has(triangles.a) || !b.tree().has(triangles.b)) return infinite;
+  const TriangleGap gap = triangle_distance(
+      corners(a.tree(), triangles.a),
+      corners(b.tree(), triangles.b, fcl_transform(X_WA.inverse() * X_WB)), infinite);
+  return std::sqrt(gap.squared_mm2);
+}
+
 bool touching(const CollisionMesh& a, const Pose& X_WA, const CollisionMesh& b, const Pose& X_WB,
               TrianglePair start) {
   constexpr double just_above_touch_mm2 = 2e-24;
@@ -373,9 +410,7 @@ bool clear_on_path(const CollisionMesh& stays, const Pose& X_WS, const Collision
 
 std::vector<MeshContact> contacts(const CollisionMesh& a, const Pose& X_WA, const CollisionMesh& b,
                                   const Pose& X_WB, ContactLimits limits) {
-  CrossingPairs crossing(a.tree(), b.tree(), fcl_transform(X_WA.inverse() * X_WB),
-                         static_cast<std::size_t>(std::max(limits.total, 0)), limits.per_region);
-  if (limits.total > 0 && limits.per_region > 0) fcl::detail::collide(&crossing);
+  CrossingPairs crossing(a.tree(), b.tree(), fcl_transform(X_WA.inverse() * X_WB), limits);
   for (auto& contact : crossing.found) {
     contact.point = X_WA * contact.point;
     contact.normal = X_WA.R * contact.normal;
@@ -385,9 +420,8 @@ std::vector<MeshContact> contacts(const CollisionMesh& a, const Pose& X_WA, cons
 
 double overlap(const CollisionMesh& a, const Pose& X_WA, const CollisionMesh& b, const Pose& X_WB,
                TrianglePair triangles) {
-  return triangle_overlap(
-      corners(a.tree().model, triangles.a),
-      corners(b.tree().model, triangles.b, fcl_transform(X_WA.inverse() * X_WB)));
+  return triangle_overlap(corners(a.tree(), triangles.a),
+                          corners(b.tree(), triangles.b, fcl_transform(X_WA.inverse() * X_WB)));
 }
 
 struct PlainSurface::Tree {

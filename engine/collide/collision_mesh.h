@@ -63,6 +63,10 @@ std::optional<MeshDistance> distance_within(double reach_mm, const CollisionMesh
                                             const Pose& X_WA, const CollisionMesh& b,
                                             const Pose& X_WB, TrianglePair start = {});
 
+/// Distance of two triangles of the surfaces; infinite where they have no such triangles.
+double triangle_gap(const CollisionMesh& a, const Pose& X_WA, const CollisionMesh& b,
+                    const Pose& X_WB, TrianglePair triangles);
+
 /// distance(...) == 0, without the distance.
 bool touching(const CollisionMesh& a, const Pose& X_WA, const CollisionMesh& b, const Pose& X_WB,
               TrianglePair start = {});

@@ -14,8 +14,11 @@ constexpr ContactLimits all_crossings{.total = 8192, .per_region = 8192};
 constexpr ContactLimits some_crossings{.total = 1024, .per_region = 8};
 // So few are all found before the search for the depth.
 constexpr ContactLimits light_contact{.total = 1024, .per_region = 1024};
+constexpr ContactLimits any_crossing{.total = 1, .per_region = 1};
 // Below this the search is fast without them.
 constexpr std::size_t many_faces = 2000;
+// Where the nearest triangles of an earlier pose are as near as this, surfaces probably cross.
+constexpr double probably_crossing_mm = 0.3;
 // Teeth modelled with a millimetre of overlap must not excuse a condyle from its fossa.
 constexpr double excused_mm = 10;
 
@@ -38,6 +41,18 @@ PairContact about(const ColliderPair& pair) {
   out.policy = pair.policy;
   out.rest_depth_mm = pair.rest_depth_mm;
   return out;
+}
+
+/// The crossings, or some, of surfaces that probably cross: found in less time than the distance,
+/// which is then 0.
+std::vector<MeshContact> early_crossings(const ColliderPair& pair, const Pose& X_CA,
+                                         const Pose& X_CB, TrianglePair start,
+                                         const QueryOptions& options) {
+  const CollisionMesh &a = pair.a->surface, &b = pair.b->surface;
+  if (pair.a->solid.face_count() + pair.b->solid.face_count() <= many_faces ||
+      !(triangle_gap(a, X_CA, b, X_CB, start) < probably_crossing_mm))
+    return {};
+  return contacts(a, X_CA, b, X_CB, options.need_depth ? light_contact : any_crossing);
 }
 
 }  // namespace
@@ -80,17 +95,26 @@ PairContact query_pair(const ColliderPair& pair, const Pose& X_CA, const Pose& X
   PairContact out = about(pair);
   const double balls_apart = (X_CB * b.solid.center() - X_CA * a.solid.center()).norm() -
                              a.solid.radius() - b.solid.radius();
-  const auto found = options.far_mm < nowhere_mm
-                         ? distance_within(options.far_mm, a.surface, X_CA, b.surface, X_CB, start)
-                         : distance(a.surface, X_CA, b.surface, X_CB, start);
-  if (!found) return far_apart(pair, std::max(options.far_mm, balls_apart));
-  const MeshDistance& nearest = *found;
-  out.distance_mm = nearest.distance_mm;
-  out.witness_a = nearest.witness_a;
-  out.witness_b = nearest.witness_b;
-  out.triangle_a = nearest.triangles.a;
-  out.triangle_b = nearest.triangles.b;
-  const bool crossing = nearest.distance_mm == 0;
+  std::vector<MeshContact> early = early_crossings(pair, X_CA, X_CB, start, options);
+  if (!early.empty()) {
+    const MeshContact& first = early.front();
+    out.distance_mm = 0;
+    out.witness_a = out.witness_b = first.point;
+    out.triangle_a = first.triangles.a;
+    out.triangle_b = first.triangles.b;
+  } else {
+    const auto found =
+        options.far_mm < nowhere_mm
+            ? distance_within(options.far_mm, a.surface, X_CA, b.surface, X_CB, start)
+            : distance(a.surface, X_CA, b.surface, X_CB, start);
+    if (!found) return far_apart(pair, std::max(options.far_mm, balls_apart));
+    out.distance_mm = found->distance_mm;
+    out.witness_a = found->witness_a;
+    out.witness_b = found->witness_b;
+    out.triangle_a = found->triangles.a;
+    out.triangle_b = found->triangles.b;
+  }
+  const bool crossing = out.distance_mm == 0;
   if (!crossing && (balls_apart > 0 || !one_encloses_other(a.solid, X_CA, b.solid, X_CB)))
     return out;
 
@@ -101,7 +125,8 @@ PairContact query_pair(const ColliderPair& pair, const Pose& X_CA, const Pose& X
   CrossingFaces crossing_faces;
   bool is_light = crossing && a.solid.face_count() + b.solid.face_count() > many_faces;
   if (is_light) {
-    light = contacts(a.surface, X_CA, b.surface, X_CB, light_contact);
+    light = early.empty() ? contacts(a.surface, X_CA, b.surface, X_CB, light_contact)
+                          : std::move(early);
     is_light = light.size() < static_cast<std::size_t>(light_contact.total);
     for (const auto& contact : light) {
       crossing_faces.a.push_back(contact.triangles.a);
@@ -129,7 +154,7 @@ PairContact query_pair(const ColliderPair& pair, const Pose& X_CA, const Pose& X
                                          by_triangles ? all_crossings : some_crossings);
     out.contacts = thin(all, options.max_contacts);
     if (all.empty() && options.max_contacts > 0)  // they touch in a point
-      out.contacts.push_back({nearest.witness_a, deepest.normal});
+      out.contacts.push_back({out.witness_a, deepest.normal});
     if (by_triangles)
       for (const auto& contact : all)
         if (const double depth = overlap(a.surface, X_CA, b.surface, X_CB, contact.triangles);
