@@ -78,8 +78,8 @@ SlidingContact::SlidingContact(std::vector<std::shared_ptr<const ContactSurface>
     const double band = std::min(f.field.settings().band_mm, m.field.settings().band_mm);
     if (!(pair.gap_mm >= 0 && pair.gap_mm <= 0.5 * band))
       throw std::invalid_argument("sliding contact: a gap is below 0 or above half the band");
-    pairs_.push_back({&m, &f, true, pair.gap_mm, pair.fixed, pair.moving});
-    pairs_.push_back({&f, &m, false, pair.gap_mm, pair.fixed, pair.moving});
+    pairs_.push_back({&m, &f, true, pair.gap_mm, pair.proves_overlap, pair.fixed, pair.moving});
+    pairs_.push_back({&f, &m, false, pair.gap_mm, pair.proves_overlap, pair.fixed, pair.moving});
     band_mm_ = std::min(band_mm_, band - pair.gap_mm);
   }
   double count = 0, square = 0;
@@ -108,6 +108,16 @@ struct SlideCache::State {
 
 SlideCache::SlideCache() = default;
 SlideCache::~SlideCache() = default;
+
+SlideCache::State& SlidingContact::kept_in(SlideCache& memory, int threads) const {
+  if (!memory.state_ || memory.state_->id != id_)
+    memory.state_ = std::make_unique<SlideCache::State>(*this, id_, threads);
+  return *memory.state_;
+}
+
+bool SlidingContact::surely_overlaps(const Pose& X_FM, SlideCache& memory, int threads) const {
+  return is_finite(X_FM) && kept_in(memory, threads).there.surely_overlaps_at(X_FM);
+}
 
 void SlidingContact::place(const std::vector<Pose>& X_FS, const std::vector<Pose>& X_MS) {
   if (X_FS.size() != fixed_.size() || X_MS.size() != moving_.size())
@@ -177,10 +187,8 @@ SlideResult SlidingContact::slide(const Pose& from, const Pose& target, SlideCac
   out.X_FM = from;
   if (!is_finite(from) || !is_finite(target)) return out;
   SlideCache own;
-  SlideCache& kept = memory ? *memory : own;
-  if (!kept.state_ || kept.state_->id != id_)
-    kept.state_ = std::make_unique<SlideCache::State>(*this, id_, threads);
-  SlideProbe &here = kept.state_->here, &there = kept.state_->there;
+  SlideCache::State& kept = kept_in(memory ? *memory : own, threads);
+  SlideProbe &here = kept.here, &there = kept.there;
   const auto walk = [&](const Pose& start, const Pose& to) {
     return SlideWalk(*this, here, start, to).run();
   };
@@ -207,7 +215,7 @@ SlideResult SlidingContact::slide(const Pose& from, const Pose& target, SlideCac
   }
 
   if (there.overlaps_at(target, settings_.slop_mm)) {
-    auto& nodes = kept.state_->nodes;
+    auto& nodes = kept.nodes;
     const SlideLattice::Node start = nodes.nearest(target);
     SlideResult answer;
     std::atomic<bool> answered =

@@ -84,8 +84,9 @@ class SlideCache {
 
 /// Two surfaces in contact with each other, and the gap between them.
 struct SlidePair {
-  int fixed = 0, moving = 0;  // indices of the surfaces
-  double gap_mm = 0;          // 0: they touch; at most half the narrower band of the two
+  int fixed = 0, moving = 0;    // indices of the surfaces
+  double gap_mm = 0;            // 0: they touch; at most half the narrower band of the two
+  bool proves_overlap = false;  // both are closed: see surely_overlaps()
 };
 
 /// Sliding contact of a moving body (of several surfaces) with a fixed one.
@@ -125,6 +126,10 @@ class SlidingContact {
   SlideResult slide(const Pose& from, const Pose& target, SlideCache* memory = nullptr,
                     int threads = 1) const;
 
+  /// Whether the fields prove that the surfaces of some pair overlap, among those that may prove it
+  /// and do not overlap at rest: a sample is deeper than the error of the field. False: undecided.
+  bool surely_overlaps(const Pose& X_FM, SlideCache& memory, int threads = 1) const;
+
   /// Largest penetration depth beyond the baseline, measured by the fields; 0 when free.
   double depth(const Pose& X_FM, int threads = 1) const;
 
@@ -140,6 +145,7 @@ class SlidingContact {
     const ContactSurface* field;
     bool samples_move = false;
     double gap_mm = 0;
+    bool proves_overlap = false;
     int fixed = 0, moving = 0;  // surfaces
     Pose X_FS = {}, X_MS = {};  // poses of the surfaces
     Pose rest = {};  // pose of the moving surface in the fixed one at which overlap is allowed
@@ -153,6 +159,9 @@ class SlidingContact {
     }
     const ContactSurface& mover() const { return samples_move ? *samples : *field; }
   };
+
+  /// What the cache keeps of this model.
+  SlideCache::State& kept_in(SlideCache& memory, int threads) const;
 
   /// Fraction of a pair's allowance that remains at a pose.
   double allowed_fraction(const Pair& pair, const Pose& X_FM) const;

@@ -250,6 +250,22 @@ bool SlideProbe::overlaps_at(const Pose& X, double depth_mm) {
   return deepest_gap_ < -depth_mm;
 }
 
+// A point of a cell is nearer to the corners than this, on average with their weights: the distance
+// there differs from its interpolation by no more.
+bool SlideProbe::surely_overlaps_at(const Pose& X) const {
+  constexpr double cell_radius = 0.8661;  // in spacings
+  bool found = false;
+  each_overlap(X, [&](const SlidingContact::Pair& pair, int sample, double) {
+    if (!pair.proves_overlap || pair.overlaps) return true;
+    const DistanceField& field = pair.field->field;
+    const DistanceField::Spot at =
+        field.spot(pair.to_field(X) * pair.samples->samples.points[sample]);
+    found = at.known && at.distance_mm < -cell_radius * field.settings().spacing_mm;
+    return !found;
+  });
+  return found;
+}
+
 double SlideProbe::clearance(const Pose& X) {
   const double near = measured_fraction * model_.band_mm_;
   look_at(X, near);

@@ -46,6 +46,8 @@ class SlideProbe {
   Overlap overlap_at(const Pose& X) const;
   /// Whether any sample is deeper than this.
   bool overlaps_at(const Pose& X, double depth_mm);
+  /// See SlidingContact::surely_overlaps. Approximate samples alone: it misses thin overlap.
+  bool surely_overlaps_at(const Pose& X) const;
 
   /// Lower bound of the gap at X, at any distance of the bodies.
   double clearance(const Pose& X);

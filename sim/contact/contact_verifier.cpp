@@ -127,6 +127,8 @@ bool ContactVerifier::clear(Found& at_target) const {
     is_clear[k] = clear(at_target[k], k);
   };
   if (near) {
+    if (state_.slider->surely_crosses(move_, threads_))
+      return false;  // much faster than the surfaces
     query_target(likely);
     if (!is_clear[likely]) return false;
   }

@@ -126,7 +126,9 @@ std::unique_ptr<SlidingContact> Slider::make_contact(BodyId body) const {
     int a = place[static_cast<std::size_t>(pair.a->number)],
         b = place[static_cast<std::size_t>(pair.b->number)];
     if (move.moves[index_of(pair.a->body)]) std::swap(a, b);
-    pairs.push_back({a, b, pair.min_distance_mm});
+    const auto closed = [](const Collider& one) { return one.solid.open_shell_count() == 0; };
+    pairs.push_back(
+        {a, b, pair.min_distance_mm, pair.apart_at_rest && closed(*pair.a) && closed(*pair.b)});
   }
   auto contact = std::make_unique<SlidingContact>(
       std::move(fixed), std::move(moving), pairs,
@@ -231,6 +233,14 @@ void Slider::keep_setting(std::unique_ptr<Setting> setting) const {
   const std::lock_guard lock(settings_mutex_);
   settings_.push_back(std::move(setting));
   if (settings_.size() > max_settings) settings_.erase(settings_.begin());
+}
+
+bool Slider::surely_crosses(const BodyMove& move, int threads) const {
+  if (!ready_) return false;
+  auto setting = take_setting(move);
+  const bool crosses = setting->contact.surely_overlaps(move.target, setting->memory, threads);
+  keep_setting(std::move(setting));
+  return crosses;
 }
 
 SlideResult Slider::slide(const BodyMove& move, const Pose& from, const Pose& target,

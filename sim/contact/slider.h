@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -29,6 +30,10 @@ class Slider {
   /// Whether the fields cover all that the move may meet: not one wall thinner than their spacing
   /// against another, nor surfaces more than 20 mm from the other body's box at rest.
   bool covers(const BodyMove& move) const;
+
+  /// Whether the fields exist and prove that the body would cross another at the target, which the
+  /// two do not at rest. False: undecided.
+  bool surely_crosses(const BodyMove& move, int threads) const;
 
   /// By the fields alone, all other bodies at their poses in the move. prepare() must have been
   /// called. Independent of earlier calls.
@@ -69,7 +74,7 @@ class Slider {
   std::vector<std::unique_ptr<SlidingContact>> contacts_;  // of each driven body
   std::vector<std::optional<Pose>> outside_;               // of each driven body
   std::mutex mutex_;
-  bool ready_ = false;
+  std::atomic<bool> ready_ = false;
   mutable std::mutex settings_mutex_;
   // not in use by a thread, the latest last
   mutable std::vector<std::unique_ptr<Setting>> settings_;

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <random>
 
+#include "engine/collide/collision_mesh.h"
 #include "tests/engine/collide/slide_bodies.h"
 #include "tests/support/boxes.h"
 #include "tests/support/overlap_oracle.h"
@@ -231,6 +232,33 @@ TEST(Slide, PairsKeepTheirGap) {
   EXPECT_THROW(SlidingContact({floor}, {ball}, {{0, 1, 0}}), std::invalid_argument);
   EXPECT_THROW(SlidingContact({floor}, {ball}, {{0, 0, 0.6}}), std::invalid_argument);
   EXPECT_THROW(SlidingContact({floor}, {ball}, {{0, 0, -0.1}}), std::invalid_argument);
+}
+
+TEST(Slide, OverlapIsProvedOnlyWhereTheSurfacesCross) {
+  const TriMesh a = test::sphere(4, 5, {0, 0, 0}, 0.04), b = test::sphere(4, 4, {0, 0, 0}, 0.04);
+  const CollisionMesh surface_a(a), surface_b(b);
+  const auto fixed = body(a), moving = body(b);
+  const SlidingContact proves({fixed}, {moving}, {{0, 0, 0, true}}),
+      silent({fixed}, {moving}, {{0, 0, 0, false}});
+  SlidingContact sunk({fixed}, {moving}, {{0, 0, 0, true}});
+  sunk.allow_overlap_at(shift(8.5, 0, 0));
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> any(-1, 1), distance(7.5, 9.5);
+  SlideCache memory, quiet, rest;
+  int proved = 0, crossing = 0;
+  for (int i = 0; i < 200; ++i) {
+    const Vector3d out = Vector3d(any(random), any(random), any(random)).normalized();
+    const Pose X = turned({any(random), any(random), 1}, 90 * any(random), distance(random) * out);
+    const bool crosses = touching(surface_a, {}, surface_b, X),
+               sure = proves.surely_overlaps(X, memory);
+    EXPECT_TRUE(crosses || !sure);
+    EXPECT_FALSE(silent.surely_overlaps(X, quiet) || sunk.surely_overlaps(X, rest));
+    crossing += crosses;
+    proved += sure;
+  }
+  EXPECT_GT(crossing, 100);
+  EXPECT_GT(proved, crossing / 2);
+  EXPECT_LT(crossing, 200);
 }
 
 TEST(Slide, SurfacesAtOtherPosesSlideThere) {
