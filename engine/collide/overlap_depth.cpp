@@ -156,9 +156,11 @@ class DepthSearch {
     if (by_distance <= enough() || near.triangle < 0) return by_distance;
     const Triangle& opposite = shell(into).tree.corners(near.triangle);
     double farthest2 = 0;
-    for (const auto& corner : t)
+    for (const auto& corner : t) {
       farthest2 = std::max(farthest2, (nearest_point(corner, opposite) - corner).squaredNorm());
-    return std::min(by_distance, std::sqrt(farthest2));
+      if (farthest2 >= by_distance * by_distance) return by_distance;
+    }
+    return std::sqrt(farthest2);
   }
 
   /// A face with one point outside lies entirely outside unless the shell crosses it.

@@ -132,7 +132,28 @@ TriangleGap triangle_distance(const Triangle& ta, const Triangle& tb, double bou
   return gap;
 }
 
-Vector nearest_point(const Vector& p, const Triangle& t) { return Prepared(t).nearest(p); }
+// source: Ericson, Real-Time Collision Detection, 5.1.5; an order of tests that needs no normal.
+Vector nearest_point(const Vector& p, const Triangle& t) {
+  const Vector ab = t[1] - t[0], ac = t[2] - t[0], ap = p - t[0];
+  const double d1 = ab.dot(ap), d2 = ac.dot(ap);
+  if (d1 <= 0 && d2 <= 0) return t[0];
+  const Vector bp = p - t[1];
+  const double d3 = ab.dot(bp), d4 = ac.dot(bp);
+  if (d3 >= 0 && d4 <= d3) return t[1];
+  const double vc = d1 * d4 - d3 * d2;
+  if (vc <= 0 && d1 >= 0 && d3 <= 0) return t[0] + ab * (d1 / (d1 - d3));
+  const Vector cp = p - t[2];
+  const double d5 = ab.dot(cp), d6 = ac.dot(cp);
+  if (d6 >= 0 && d5 <= d6) return t[2];
+  const double vb = d5 * d2 - d1 * d6;
+  if (vb <= 0 && d2 >= 0 && d6 <= 0) return t[0] + ac * (d2 / (d2 - d6));
+  const double va = d3 * d6 - d5 * d4;
+  if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0)
+    return t[1] + (t[2] - t[1]) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)));
+  const double sum = va + vb + vc;
+  if (!(sum > 0)) return Prepared(t).nearest(p);  // without area
+  return t[0] + ab * (vb / sum) + ac * (vc / sum);
+}
 
 TriangleCrossing triangle_crossing(const Triangle& ta, const Triangle& tb) {
   const Prepared a(ta), b(tb);
