@@ -10,15 +10,13 @@
 #include <limits>
 #include <utility>
 
-#include "engine/collide/box_bound.h"
+#include "engine/collide/box_tree.h"
 #include "engine/collide/plain_query.h"
 #include "engine/collide/shells.h"
 #include "engine/collide/triangle_distance.h"
 
 namespace condyle {
 namespace {
-
-using Model = fcl::BVHModel<fcl::OBBd>;
 
 // The packaged library was built with an alignment of 16; wider vector flags would be incompatible.
 static_assert(alignof(fcl::Transform3d) == 16);
@@ -31,8 +29,7 @@ fcl::Transform3d fcl_transform(const Pose& X) {
 }
 
 /// Builds the tree of boxes of an empty model.
-template <class Bounds>
-void build_model(const TriMesh& mesh, fcl::BVHModel<Bounds>& model) {
+void build_model(const TriMesh& mesh, fcl::BVHModel<fcl::OBBRSSd>& model) {
   std::vector<fcl::Triangle> triangles;
   triangles.reserve(mesh.triangles.size());
   for (const auto& t : mesh.triangles)
@@ -43,48 +40,18 @@ void build_model(const TriMesh& mesh, fcl::BVHModel<Bounds>& model) {
   model.endModel();
 }
 
-/// At this depth the tree is divided into regions of its surface.
-constexpr int region_depth = 6;
-constexpr int region_count = 1 << region_depth;
-
 struct Surface {
+  explicit Surface(const TriMesh& mesh)
+      : vertices(mesh.vertices), triangles(mesh.triangles), tree(mesh) {}
+
   std::vector<Eigen::Vector3d> vertices;
   std::vector<Eigen::Vector3i> triangles;
-  std::vector<BoxPair> boxes;  // the root alone, then the children of each inner node
-  std::vector<std::array<signed char, 2>> region;  // of each box; -1 above the cut
-  double reach_mm = 0;                             // no corner of a box is farther from the origin
+  BoxTree tree;
 
   bool has(int triangle) const {
     return triangle >= 0 && static_cast<std::size_t>(triangle) < triangles.size();
   }
 };
-
-/// Contents of a box: a triangle, or the index of its children's boxes.
-int holding_triangle(int triangle) { return -1 - triangle; }
-bool holds_triangle(int held) { return held < 0; }
-int held_triangle(int held) { return -1 - held; }
-
-/// Copies a node of FCL's tree and all below it to the boxes.
-void describe_nodes(const Model& model, Surface& surface, int node, int depth, int region,
-                    std::size_t boxes, int which) {
-  const auto& bv = model.getBV(node);
-  const auto& box = bv.bv;
-  const int held =
-      bv.isLeaf() ? holding_triangle(bv.primitiveId()) : static_cast<int>(surface.boxes.size());
-  surface.boxes[boxes].set(which, box.To, box.extent, box.axis, held);
-  surface.reach_mm = std::max(surface.reach_mm, box.To.norm() + box.extent.norm());
-  surface.region[boxes][static_cast<std::size_t>(which)] =
-      static_cast<signed char>(depth >= region_depth ? region % region_count : -1);
-  if (bv.isLeaf()) return;
-  // The path from the root, as bits, is the index of the region.
-  const int next = depth < region_depth ? 2 * region : region;
-  const std::size_t inner = surface.boxes.size();
-  surface.boxes.emplace_back();
-  surface.region.emplace_back();
-  describe_nodes(model, surface, bv.leftChild(), depth + 1, next, inner, 0);
-  describe_nodes(model, surface, bv.rightChild(), depth + 1, depth < region_depth ? next + 1 : next,
-                 inner, 1);
-}
 
 Triangle corners(const Surface& surface, int triangle) {
   const Eigen::Vector3i& t = surface.triangles[static_cast<std::size_t>(triangle)];
@@ -121,7 +88,7 @@ std::pair<ChildRange, ChildRange> opened(const ChildRange& a, const ChildRange& 
 /// condyle in its fossa, crowns) are close over an area.
 constexpr double facing_mm = 10;
 
-/// Traverses FCL's two trees, four pairs of boxes at a time. Pairs of triangles are measured by
+/// Traverses the two trees, four pairs of boxes at a time. Pairs of triangles are measured by
 /// triangle_distance, because FCL's triangle distance loses digits, and occasionally the answer,
 /// where edges are parallel. All in the coordinates of A.
 class NearestPair {
@@ -131,10 +98,10 @@ class NearestPair {
               double bound_mm2)
       : a_(a),
         b_(b),
-        boxes_a_(a.boxes.data()),
-        boxes_b_(b.boxes.data()),
+        boxes_a_(a.tree.boxes.data()),
+        boxes_b_(b.tree.boxes.data()),
         X_(X),
-        turned_(X.linear(), X.translation(), a.reach_mm + b.reach_mm) {
+        turned_(X.linear(), X.translation(), a.tree.reach_mm + b.tree.reach_mm) {
     best.squared_mm2 = bound_mm2;
     best_mm = std::sqrt(bound_mm2);
     if (a_.has(start.a) && b_.has(start.b)) measure(start);
@@ -221,10 +188,10 @@ class PathContactTest {
                   const BodyPath& path, double min_distance_mm)
       : a_(a),
         b_(b),
-        boxes_a_(a.boxes.data()),
-        boxes_b_(b.boxes.data()),
+        boxes_a_(a.tree.boxes.data()),
+        boxes_b_(b.tree.boxes.data()),
         X_(X),
-        turned_(X.linear(), X.translation(), a.reach_mm + b.reach_mm),
+        turned_(X.linear(), X.translation(), a.tree.reach_mm + b.tree.reach_mm),
         path_(path),
         min_distance_mm_(min_distance_mm) {}
 
@@ -283,10 +250,10 @@ class CrossingPairs {
   CrossingPairs(const Surface& a, const Surface& b, const fcl::Transform3d& X, ContactLimits limits)
       : a_(a),
         b_(b),
-        boxes_a_(a.boxes.data()),
-        boxes_b_(b.boxes.data()),
+        boxes_a_(a.tree.boxes.data()),
+        boxes_b_(b.tree.boxes.data()),
         X_(X),
-        turned_(X.linear(), X.translation(), a.reach_mm + b.reach_mm),
+        turned_(X.linear(), X.translation(), a.tree.reach_mm + b.tree.reach_mm),
         total_(static_cast<std::size_t>(std::max(limits.total, 0))),
         per_region_(limits.per_region) {
     if (total_ > 0 && per_region_ > 0) visit({boxes_a_, 0, 1}, {boxes_b_, 0, 1});
@@ -309,7 +276,8 @@ class CrossingPairs {
     visit(in_a, in_b);
   }
   int region(const ChildRange& a, int i) const {
-    return a_.region[static_cast<std::size_t>(a.boxes - boxes_a_)][static_cast<std::size_t>(i)];
+    return a_.tree
+        .region[static_cast<std::size_t>(a.boxes - boxes_a_)][static_cast<std::size_t>(i)];
   }
   bool is_full(const ChildRange& a, int i) const {
     const int at = region(a, i);
@@ -338,26 +306,20 @@ class CrossingPairs {
   BoxTransform turned_;
   std::size_t total_;
   int per_region_;
-  std::array<int, region_count> count_{};
+  std::array<int, BoxTree::region_count> count_{};
 };
 
 }  // namespace
 
-struct CollisionMesh::Tree : Surface {};
+struct CollisionMesh::Tree : Surface {
+  using Surface::Surface;
+};
 
-CollisionMesh::CollisionMesh(const TriMesh& mesh) : tree_(std::make_unique<Tree>()) {
+CollisionMesh::CollisionMesh(const TriMesh& mesh) {
   require_sound(mesh);
+  tree_ = std::make_unique<Tree>(mesh);
   for (const auto& t : mesh.triangles)
     for (const int v : t) box_.add(mesh.vertices[static_cast<std::size_t>(v)]);
-  Model model;
-  build_model(mesh, model);
-  tree_->vertices = mesh.vertices;
-  tree_->triangles = mesh.triangles;
-  tree_->boxes.reserve(mesh.triangles.size());
-  tree_->region.reserve(mesh.triangles.size());
-  tree_->boxes.emplace_back();
-  tree_->region.emplace_back();
-  describe_nodes(model, *tree_, 0, 0, 0, 0, 0);
 }
 
 CollisionMesh::~CollisionMesh() = default;

@@ -32,7 +32,7 @@ struct MeshContact {
   TrianglePair triangles;
 };
 
-/// A surface with its tree of boxes (FCL's BVHModel<OBB>) in body coordinates: built once, moved
+/// A surface with its tree of boxes (BoxTree) in body coordinates: built once, moved
 /// by its pose alone. Queries are const and thread-safe.
 class CollisionMesh {
  public:
