@@ -24,7 +24,7 @@ struct Search {
     const SurfaceSamples::Ball& ball_here = samples.balls[index];
     const Vector3d center = R * ball_here.center.cast<double>() + t;
     // Within the band the field is more accurate than its bounds.
-    const FieldSample at_center = field.at(center);
+    const DistanceField::Spot at_center = field.spot(center);
     const double bound =
         at_center.known ? at_center.distance_mm - field_bend_mm : field.lower_bound(center);
     if (bound > ball_here.radius + reach_mm) return;
@@ -34,7 +34,7 @@ struct Search {
       return;
     }
     for (int i = ball_here.first; i < ball_here.first + ball_here.count; ++i) {
-      const FieldSample here = field.at(R * samples.points[i] + t);
+      const DistanceField::Spot here = field.spot(R * samples.points[i] + t);
       if (here.distance_mm <= reach_mm)
         found.push_back({i, here.known ? here.distance_mm : -reach_mm});
     }

@@ -62,10 +62,12 @@ void ContactFinder::sift(SampleQuery& query, const SampleCacheKey& place) {
       thin(query, place.within_mm + sift_mm);
       group = query.group[i];
     }
-    const FieldSample here = query.field->field.at(R * s.points[i] + place.sifted_at.t);
-    double gap = here.distance_mm - query.gap_mm;
+    const DistanceField& field = query.field->field;
+    const DistanceField::Spot spot = field.spot(R * s.points[i] + place.sifted_at.t);
+    double gap = spot.distance_mm - query.gap_mm;
     if (!query.allowed.empty()) gap -= static_cast<double>(query.allowed[i]);
-    if (here.known && gap > reach) continue;
+    if (spot.known && gap > reach) continue;
+    const FieldSample here{spot.distance_mm, field.gradient(spot), spot.known};
     const SampleDistance seen = classified(here, R * s.normals[i], s.spread[i]);
     if (seen.known && seen.faces)
       group_.push_back({n.sample, gap, here.gradient});
@@ -216,12 +218,14 @@ void ContactFinder::find(std::span<const Pose> X_WB, double active_mm, int threa
     const int sample = places_[p].sample;
     const SurfaceSamples& s = query.samples->samples;
     const Vector3d p_F = R_FS_[l] * s.points[sample] + query.X_FS.t;
-    const FieldSample in_field = query.field->field.at(p_F);
+    const DistanceField& field = query.field->field;
+    const DistanceField::Spot spot = field.spot(p_F);
     SurfaceContact& contact = seen_[p];
-    contact.gap_mm = in_field.distance_mm - query.gap_mm;
+    contact.gap_mm = spot.distance_mm - query.gap_mm;
     if (!query.allowed.empty()) contact.gap_mm -= static_cast<double>(query.allowed[sample]);
-    counts_[p] = in_field.known && contact.gap_mm <= active_mm;
+    counts_[p] = spot.known && contact.gap_mm <= active_mm;
     if (!counts_[p]) return;
+    const FieldSample in_field{spot.distance_mm, field.gradient(spot), spot.known};
     const SampleDistance here =
         classified(in_field, R_FS_[l] * s.normals[sample], s.spread[sample]);
     counts_[p] = here.faces && here.gradient.squaredNorm() > 0.1;

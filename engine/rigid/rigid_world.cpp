@@ -170,9 +170,11 @@ void RigidWorld::allow_overlap(int pair, double around_mm) {
 
 void RigidWorld::set_force(int force, const Vector3d& force_N) {
   require(force >= 0 && force < static_cast<int>(state_->forces.size()),
-          "there is no force " + std::to_string(force));
-  require(force_N.norm() <= force_limit_N, "a force of " + text(force_N.norm()) +
-                                               " N is not finite or above " + text(force_limit_N));
+          [&] { return "there is no force " + std::to_string(force); });
+  require(force_N.norm() <= force_limit_N, [&] {
+    return "a force of " + text(force_N.norm()) + " N is not finite or above " +
+           text(force_limit_N);
+  });
   state_->forces[static_cast<std::size_t>(force)].force_N = force_N;
 }
 

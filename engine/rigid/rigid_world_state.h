@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <concepts>
 #include <memory>
 #include <string>
 #include <vector>
@@ -18,6 +19,12 @@ constexpr double force_limit_N = 1e5;
 
 inline void require(bool good, const std::string& problem) {
   if (!good) throw InputError("dynamics: " + problem);
+}
+
+/// The same for what is called in every step: the problem is described only where there is one.
+template <std::invocable Problem>
+void require(bool good, const Problem& problem) {
+  if (!good) require(false, problem());
 }
 
 /// The objects of a world and the stages of a step (rigid_step.cpp).
@@ -77,17 +84,18 @@ struct RigidWorld::State : ContactGenerator {
 
   void check_body(int body) const {
     require(body >= 0 && body < static_cast<int>(count()),
-            "there is no body " + std::to_string(body));
+            [&] { return "there is no body " + std::to_string(body); });
   }
   static void check_pose(const Pose& X_WB) {
     require(X_WB.t.allFinite() && std::abs(X_WB.R.norm() - 1) < 1e-6,
-            "a pose is not finite or its rotation not of unit length");
+            [] { return std::string("a pose is not finite or its rotation not of unit length"); });
   }
   void check_motion(const RigidMotion& motion, double radius_mm) const {
     const double speed = motion.velocity.norm() + motion.spin.norm() * radius_mm;
-    require(speed <= settings.max_speed_mm_s, "a motion of " + std::to_string(speed) +
-                                                  " mm/s is not finite or above " +
-                                                  std::to_string(settings.max_speed_mm_s));
+    require(speed <= settings.max_speed_mm_s, [&] {
+      return "a motion of " + std::to_string(speed) + " mm/s is not finite or above " +
+             std::to_string(settings.max_speed_mm_s);
+    });
   }
   static void check_force(const Eigen::Vector3d& force_N) {
     require(force_N.norm() <= force_limit_N, "a force of " + std::to_string(force_N.norm()) +
