@@ -48,8 +48,10 @@ DistanceField stored_field(const fs::path& cache, std::uint64_t name, const Fiel
   if (!cache.empty()) try {
       std::error_code absent;
       if (fs::exists(file, absent))
-        if (auto field = DistanceField::from_bytes(read_file(file), name, settings))
+        if (auto field = DistanceField::from_bytes(read_file(file), name, settings)) {
+          note_use(file);
           return *std::move(field);
+        }
     } catch (const std::exception&) {
       // Unreadable: treated as absent.
     }
@@ -57,6 +59,7 @@ DistanceField stored_field(const fs::path& cache, std::uint64_t name, const Fiel
   if (!cache.empty()) try {
       make_folder(cache);
       write_file(file, field.to_bytes(name));
+      limit_cache(cache);
     } catch (const std::exception&) {
       // Failure to write the cache only costs time.
     }

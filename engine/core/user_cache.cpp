@@ -3,6 +3,7 @@
 #include <link.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -95,10 +96,53 @@ std::string_view program_build() {
   return id;
 }
 
-ResultCache::ResultCache(fs::path folder, std::string kind, std::size_t most)
+void limit_cache(const fs::path& folder, std::uintmax_t most_bytes) {
+  constexpr auto half_written_for = std::chrono::hours(1);
+  struct Kept {
+    fs::file_time_type used;
+    fs::path file;
+    std::uintmax_t bytes;
+    bool operator<(const Kept& other) const {
+      return used != other.used ? used < other.used : file < other.file;
+    }
+  };
+  std::vector<Kept> kept;
+  std::uintmax_t all = 0;
+  const auto now = fs::file_time_type::clock::now();
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    std::error_code gone;  // by another program
+    if (!entry->is_regular_file(gone)) continue;
+    const auto used = entry->last_write_time(gone);
+    const auto bytes = gone ? 0 : entry->file_size(gone);
+    if (gone) continue;
+    if (name.starts_with(".") && name.ends_with(".part") && now - used > half_written_for) {
+      fs::remove(entry->path(), gone);
+    } else if (name.ends_with(".bin")) {
+      kept.push_back({used, entry->path(), bytes});
+      all += bytes;
+    }
+  }
+  if (all <= most_bytes) return;
+  std::sort(kept.begin(), kept.end());
+  for (const Kept& oldest : kept) {
+    if (all <= most_bytes) return;
+    fs::remove(oldest.file, error);
+    all -= oldest.bytes;
+  }
+}
+
+void note_use(const fs::path& file) {
+  std::error_code not_ours;
+  fs::last_write_time(file, fs::file_time_type::clock::now(), not_ours);
+}
+
+ResultCache::ResultCache(fs::path folder, std::string kind, std::uintmax_t most_bytes)
     : folder_(program_build().empty() ? fs::path() : std::move(folder)),
       kind_(std::move(kind)),
-      most_(most) {}
+      most_bytes_(most_bytes) {}
 
 fs::path ResultCache::file_of(std::uint64_t key) const {
   char text[32];
@@ -120,7 +164,7 @@ std::optional<std::string> ResultCache::read(std::uint64_t inputs) const {
     std::memcpy(&tail, bytes.data() + size, sizeof tail);
     bytes.resize(size);
     if (tail.key != key || tail.hash != hash_with_key(bytes, key)) return std::nullopt;
-    fs::last_write_time(file, fs::file_time_type::clock::now(), error);  // in use
+    note_use(file);
     return bytes;
   } catch (const std::exception&) {
     return std::nullopt;  // unreadable: as absent
@@ -135,26 +179,10 @@ void ResultCache::write(std::uint64_t inputs, std::string result) const {
   try {
     make_folder(folder_);
     write_file(file_of(key), result);
-    remove_old();
+    limit_cache(folder_, most_bytes_);
   } catch (const std::exception&) {
     // See the header.
   }
-}
-
-void ResultCache::remove_old() const {
-  std::vector<std::pair<fs::file_time_type, fs::path>> files;
-  std::error_code error;
-  for (fs::directory_iterator entry(folder_, error), end; !error && entry != end;
-       entry.increment(error)) {
-    const std::string name = entry->path().filename().string();
-    std::error_code gone;  // by another program
-    const auto time = fs::last_write_time(entry->path(), gone);
-    if (!gone && name.starts_with(kind_ + "-") && name.ends_with(".bin"))
-      files.emplace_back(time, entry->path());
-  }
-  if (files.size() <= most_) return;
-  std::sort(files.begin(), files.end());
-  for (std::size_t i = 0; i + most_ < files.size(); ++i) fs::remove(files[i].second, error);
 }
 
 }  // namespace condyle

@@ -21,13 +21,24 @@ std::uint64_t word_hash(const void* data, std::size_t size, std::uint64_t h = ha
 /// none.
 std::string_view program_build();
 
+/// Most bytes of the results in a cache folder, files *.bin of any kind: 4 GiB.
+constexpr std::uintmax_t most_cache_bytes = std::uintmax_t{4} << 30;
+
+/// Removes the results that were not used for longest until the others take at most `most_bytes`,
+/// and what an interrupted program left half-written more than an hour ago.
+void limit_cache(const std::filesystem::path& folder, std::uintmax_t most_bytes = most_cache_bytes);
+
+/// Notes that a result was used.
+void note_use(const std::filesystem::path& file);
+
 /// Results of this build of the program, kept on disk where they take longer to compute than to
 /// read: files KIND-KEY.bin of a folder.
 class ResultCache {
  public:
-  /// Nothing is kept in an empty folder, nor by a program without a build ID. `most`: files of this
-  /// kind; older ones are removed.
-  ResultCache(std::filesystem::path folder, std::string kind, std::size_t most);
+  /// Nothing is kept in an empty folder, nor by a program without a build ID. `most_bytes`: see
+  /// limit_cache().
+  ResultCache(std::filesystem::path folder, std::string kind,
+              std::uintmax_t most_bytes = most_cache_bytes);
 
   /// The result stored under a hash of everything that it depends on besides the program; none when
   /// it is absent or damaged.
@@ -37,11 +48,10 @@ class ResultCache {
 
  private:
   std::filesystem::path file_of(std::uint64_t key) const;
-  void remove_old() const;
 
   std::filesystem::path folder_;
   std::string kind_;
-  std::size_t most_;
+  std::uintmax_t most_bytes_;
 };
 
 }  // namespace condyle

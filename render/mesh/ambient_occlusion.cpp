@@ -183,8 +183,7 @@ void fields(Archive& archive, Occlusion& occlusion) {
 std::vector<Occlusion> stored_occlusion(const std::filesystem::path& cache,
                                         std::span<const OcclusionSurface> surfaces, int directions,
                                         int threads) {
-  constexpr std::size_t most_files = 24;
-  const ResultCache results(cache, "occlusion", most_files);
+  const ResultCache results(cache, "occlusion");
   std::uint64_t inputs = word_hash(&directions, sizeof directions);
   for (const auto& surface : surfaces) {
     const std::size_t numbers[] = {surface.vertices.size(), surface.triangles.size(),

@@ -12,7 +12,6 @@ namespace condyle {
 namespace {
 
 constexpr const char* file_kind = "tissue";
-constexpr std::size_t most_files = 24;  // of 10 MB each at the default number of nodes
 
 template <class T>
 std::uint64_t hash_of(const std::vector<T>& list, std::uint64_t h) {
@@ -127,7 +126,7 @@ std::shared_ptr<const TissueModel> stored_tissue(const std::filesystem::path& ca
                                                  const Progress& progress) {
   const Part* face = patient.find(Role::face);
   if (!face || face->mesh.empty()) return nullptr;
-  const ResultCache results(cache, file_kind, most_files);
+  const ResultCache results(cache, file_kind);
   const std::uint64_t inputs = inputs_of(patient, settings);
   if (const auto bytes = results.read(inputs))
     if (auto model = model_from(*bytes, patient, settings)) return model;

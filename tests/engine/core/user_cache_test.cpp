@@ -22,7 +22,7 @@ fs::path only_file(const fs::path& folder) {
 
 TEST(ResultCache, GivesBackWhatWasWrittenUnderTheSameInputs) {
   const test::Folder folder;
-  const ResultCache cache(folder.path() / "made", "numbers", 4);
+  const ResultCache cache(folder.path() / "made", "numbers");
   EXPECT_FALSE(cache.read(7));
   cache.write(7, "a result");
   EXPECT_EQ(cache.read(7), "a result");
@@ -34,7 +34,7 @@ TEST(ResultCache, GivesBackWhatWasWrittenUnderTheSameInputs) {
 
 TEST(ResultCache, ADamagedFileIsAbsent) {
   const test::Folder folder;
-  const ResultCache cache(folder.path(), "numbers", 4);
+  const ResultCache cache(folder.path(), "numbers");
   cache.write(7, "a result of some length");
   const fs::path file = only_file(folder.path());
   const std::string whole = read_file(file);
@@ -54,7 +54,7 @@ TEST(ResultCache, ADamagedFileIsAbsent) {
 
 TEST(ResultCache, AFileUnderTheNameOfAnotherIsAbsent) {
   const test::Folder folder;
-  const ResultCache cache(folder.path(), "numbers", 4);
+  const ResultCache cache(folder.path(), "numbers");
   cache.write(7, "of seven");
   const fs::path of_seven = only_file(folder.path());
   const std::string bytes = read_file(of_seven);
@@ -64,12 +64,15 @@ TEST(ResultCache, AFileUnderTheNameOfAnotherIsAbsent) {
   EXPECT_FALSE(cache.read(8));
 }
 
-TEST(ResultCache, KeepsTheLatestFilesOfItsKind) {
+TEST(ResultCache, KeepsTheFilesThatWereUsedLastUpToItsLimit) {
   const test::Folder folder;
-  const ResultCache cache(folder.path(), "numbers", 3), other(folder.path(), "letters", 3);
-  other.write(1, "other");
+  const std::string result(100, 'r');
+  const std::uintmax_t three_files = 3 * (result.size() + 16) + 50;  // each with its key and hash
+  const ResultCache cache(folder.path(), "numbers", three_files),
+      other(folder.path(), "letters", three_files);
+  other.write(1, result);
   for (std::uint64_t i = 0; i < 5; ++i) {
-    cache.write(i, "result");
+    cache.write(i, result);
     // Each file older than the next by more than a clock's step.
     for (const auto& entry : fs::directory_iterator(folder.path()))
       fs::last_write_time(entry.path(),
@@ -81,17 +84,33 @@ TEST(ResultCache, KeepsTheLatestFilesOfItsKind) {
   EXPECT_FALSE(cache.read(2));
   EXPECT_TRUE(cache.read(3));
   EXPECT_TRUE(cache.read(4));
-  EXPECT_TRUE(other.read(1));
+  EXPECT_FALSE(other.read(1));  // files of every kind count
+}
+
+TEST(ResultCache, WhatWasLeftHalfWrittenIsRemovedAfterAnHour) {
+  const test::Folder folder;
+  const fs::path old = folder.path() / ".numbers-1.bin.77-0.part",
+                 fresh = folder.path() / ".numbers-2.bin.77-1.part",
+                 other = folder.path() / "notes.txt", whole = folder.path() / "field-1.bin";
+  for (const fs::path& file : {old, fresh, other, whole}) write_file(file, "content");
+  const auto long_ago = fs::file_time_type::clock::now() - std::chrono::hours(2);
+  for (const fs::path& file : {old, other, whole}) fs::last_write_time(file, long_ago);
+  limit_cache(folder.path());
+  EXPECT_FALSE(fs::exists(old));
+  EXPECT_TRUE(fs::exists(fresh) && fs::exists(other) && fs::exists(whole));
+  limit_cache(folder.path(), 3);
+  EXPECT_TRUE(fs::exists(fresh) && fs::exists(other));
+  EXPECT_FALSE(fs::exists(whole));
 }
 
 TEST(ResultCache, WithoutAFolderNothingIsKept) {
-  const ResultCache nowhere({}, "numbers", 3);
+  const ResultCache nowhere({}, "numbers");
   nowhere.write(1, "result");
   EXPECT_FALSE(nowhere.read(1));
   const test::Folder folder;
   const fs::path file = folder.path() / "file";
   write_file(file, "not a folder");
-  const ResultCache in_file(file, "numbers", 3);
+  const ResultCache in_file(file, "numbers");
   EXPECT_NO_THROW(in_file.write(1, "result"));
   EXPECT_FALSE(in_file.read(1));
 }
