@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "engine/core/archive.h"
+#include "engine/core/user_cache.h"
 #include "engine/mesh/patches.h"
 #include "engine/mesh/simplify.h"
 
@@ -33,6 +35,8 @@ constexpr int piece_triangles = 64;
 // The penumbra of a shadow is about 3 mm wide, and begins farther off its surface than this.
 constexpr double coarse_error_mm = 0.2;
 constexpr int few_triangles = 4000;
+// Below this, patches are made sooner than read.
+constexpr std::size_t slow_triangles = 5000;
 
 /// The facing directions of a piece's triangles. Degenerate triangles have none: they are not drawn
 /// either.
@@ -59,9 +63,30 @@ DirectionCone cone_of(std::span<const Eigen::Vector3f> positions,
   return cone;
 }
 
-GpuMesh::Surface surface_of(std::span<const Eigen::Vector3f> positions,
-                            std::span<const Eigen::Vector3i> triangles) {
-  auto patches = cut_into_patches(positions, triangles, piece_triangles);
+/// The patches that `cut` makes of a surface, kept on disk where that takes long.
+template <class Cut>
+Patches stored_patches(const char* kind, std::span<const Eigen::Vector3f> positions,
+                       std::span<const Eigen::Vector3i> triangles, const Cut& cut) {
+  if (triangles.size() < slow_triangles) return cut();
+  const ResultCache results(user_cache_folder(), kind);
+  const std::size_t sizes[] = {positions.size(), triangles.size()};
+  const std::uint64_t inputs = word_hash(
+      triangles.data(), triangles.size_bytes(),
+      word_hash(positions.data(), positions.size_bytes(), word_hash(sizes, sizeof sizes)));
+  Patches patches;
+  if (const auto bytes = results.read(inputs)) {
+    ArchiveReader reader(*bytes);
+    reader(patches.triangles, patches.first);
+    if (reader.complete()) return patches;
+  }
+  patches = cut();
+  ArchiveWriter writer;
+  writer(patches.triangles, patches.first);
+  results.write(inputs, writer.take());
+  return patches;
+}
+
+GpuMesh::Surface surface_of(Patches patches) {
   GpuMesh::Surface surface{std::move(patches.triangles), {}, {}, {}};
   for (std::size_t i = 0; i + 1 < patches.first.size(); ++i)
     surface.pieces.push_back({patches.first[i], patches.first[i + 1] - patches.first[i], {}, {}});
@@ -108,7 +133,10 @@ void GpuMesh::send_ordered(GLuint buffer, std::span<const T> values, GLenum usag
 
 GpuMesh::GpuMesh(std::span<const Eigen::Vector3f> positions,
                  std::span<const Eigen::Vector3i> triangles, bool moving)
-    : fine_(surface_of(positions, triangles)), usage_(moving ? GL_STREAM_DRAW : GL_STATIC_DRAW) {
+    : fine_(surface_of(
+          stored_patches("patches", positions, triangles,
+                         [&] { return cut_into_patches(positions, triangles, piece_triangles); }))),
+      usage_(moving ? GL_STREAM_DRAW : GL_STATIC_DRAW) {
   // Vertices in the order of their first use: without a GPU a few hundred neighbours are cached at
   // a time, and evicted ones are computed again.
   card_vertex_.assign(positions.size(), -1);
@@ -149,7 +177,10 @@ void GpuMesh::add_coarse(std::span<const Eigen::Vector3f> positions,
                          std::span<const Eigen::Vector3i> triangles) {
   const int few = std::max(few_triangles, static_cast<int>(triangles.size()) / 4);
   if (static_cast<int>(triangles.size()) <= few) return;
-  coarse_ = surface_of(positions, coarser(positions, triangles, few, coarse_error_mm));
+  coarse_ = surface_of(stored_patches("coarse", positions, triangles, [&] {
+    return cut_into_patches(positions, coarser(positions, triangles, few, coarse_error_mm),
+                            piece_triangles);
+  }));
   for (auto& t : coarse_.triangles)
     for (int& v : t) v = card_vertex_[static_cast<std::size_t>(v)];
   find_corners(coarse_, order_.size());
