@@ -173,6 +173,10 @@ SimulatorSettings simulator_settings(const MotionOptions& options, const CommonO
   settings.tissue = options.tissue.simulated;
   settings.tissue_model.surface_nodes = options.tissue.surface_nodes;
   settings.tissue_model.plan = parse_tissue(options.tissue);
+  settings.tissue_model.upper_face =
+      settings.tissue &&
+      (motion_moves_upper_face(options.motion) ||
+       (!options.expression.empty() && expression_moves_upper_face(options.expression)));
   settings.contact.friction = options.friction;
   for (const auto& pair : options.pairs) settings.contact.pair_rules.push_back(parse_pair(pair));
   return settings;
@@ -225,6 +229,7 @@ Motion healthy_motion_of(const MotionOptions& options, const Scene& scene, int t
   const Expression expression = make_expression(options.expression, face_muscles_of(*scene.tissue));
   if (motion.duration_s <= 0) motion.duration_s = std::max(expression.duration_s, 0.2);
   motion.expression = expression.at;
+  motion.notes.insert(motion.notes.end(), expression.notes.begin(), expression.notes.end());
   return motion;
 }
 

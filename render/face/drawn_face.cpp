@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "engine/math/smooth_step.h"
-#include "render/face/face_openings.h"
 #include "render/face/skin_tint.h"
 #include "render/shaders/material.h"
+#include "sim/case/face_openings.h"
 
 namespace condyle {
 namespace {

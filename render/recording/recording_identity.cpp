@@ -70,8 +70,10 @@ std::string tissue_text(const SimulatorSettings& settings, const Case& patient,
   if (!settings.tissue) return "none";
   const TissuePlan plan = overlaid(patient.tissue, settings.tissue_model.plan);
   const std::string muscles = tissue ? face_muscles_csv(face_muscles_of(*tissue)) : "";
-  return fmt::format("{} {} {}", settings.tissue_model.surface_nodes, tissue_plan_json(plan).dump(),
-                     hash_text(hash_bytes(muscles.data(), muscles.size(), hash_start)));
+  return fmt::format("{} {} {}{}", settings.tissue_model.surface_nodes,
+                     tissue_plan_json(plan).dump(),
+                     hash_text(hash_bytes(muscles.data(), muscles.size(), hash_start)),
+                     settings.tissue_model.upper_face ? " with the upper face" : "");
 }
 
 }  // namespace

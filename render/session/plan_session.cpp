@@ -272,6 +272,11 @@ void PlanSession::predict(Patient bones) {
   });
 }
 
+void PlanSession::renew_face() {
+  stages_.reset();
+  predict(state_.patient);
+}
+
 std::optional<PlanSession::Planned> PlanSession::take() {
   std::optional<Planned> planned;
   if (!checking_.active() && !waiting_.empty()) {

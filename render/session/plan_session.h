@@ -58,6 +58,9 @@ class PlanSession {
   bool follow_hand();
   /// After the patient was replaced.
   void renew_handles();
+  /// Predicts the planned patient's face again, with the settings of the soft tissue as they now
+  /// are.
+  void renew_face();
   /// Whether the plan has any step.
   bool has_steps() const { return document_ && !document_->plan().steps.empty(); }
   /// The patient after the last edit, once it is ready; questions and failures are reported.

@@ -10,6 +10,8 @@
 #include "render/recording/distance_drawing.h"
 #include "render/session/view_overlays.h"
 #include "sim/frame/part_names.h"
+#include "sim/motion/motion.h"
+#include "sim/muscles/expression_names.h"
 #include "sim/plan/clinical_frame.h"
 
 namespace condyle {
@@ -320,7 +322,10 @@ void ViewSession::keep_motion() {
 void ViewSession::take_motion() {
   if (!moving_.done()) return;
   std::optional<std::shared_ptr<const SessionMotion>> made;
-  state_.try_or_report("Cannot make this motion", [&] { made = moving_.take(); });
+  state_.try_or_report("Cannot make this motion", [&] {
+    made = moving_.take();
+    motion_lifts_brows_ = made && motion_moves_upper_face((*made)->choice.spec);
+  });
   if (!made) return keep_motion();
   preview_.restart();
   const bool was_playing = state_.front_end.view().playing;
@@ -364,6 +369,20 @@ void ViewSession::show_progress() {
   busy_with_ = recording_.active() ? "recording" : "";
 }
 
+/// Once sliders or the motion move brows or forehead, the soft tissue is built again with these.
+void ViewSession::extend_face(const ViewState& view) {
+  bool& upper_face = state_.settings.simulator.tissue_model.upper_face;
+  const bool busy = loader_.job().active() || plan_.checking().active() ||
+                    plan_.colliding().active() || plan_.predicting().active();
+  if (upper_face || busy || !state_.patient || !state_.patient->scene.tissue) return;
+  if (!moves_upper_face(view.expression) && !(state_.motion && motion_lifts_brows_)) return;
+  upper_face = true;
+  if (state_.patient->scene.plan)
+    plan_.renew_face();
+  else
+    loader_.renew(state_.scene.landmarks_in_use);
+}
+
 void ViewSession::turn() {
   const ViewState& view = state_.front_end.poll();
   for (const Request& request : state_.front_end.take_requests()) carry_out(request);
@@ -375,6 +394,7 @@ void ViewSession::turn() {
   if (has_splint) state_.scene.plan = plan_.view();
   const bool has_preview = plan_.take_preview(), moved_by_hand = plan_.follow_hand();
   if (has_preview || has_splint || moved_by_hand) state_.show_plan();
+  extend_face(view);
   if (state_.patient && !loader_.job().active() && !(view.motion == asked_))
     want_motion(view.motion);
   take_motion();

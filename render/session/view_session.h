@@ -78,6 +78,7 @@ class ViewSession {
   void resume_view();
   void show_planned_patient(const std::map<std::string, PartView>& earlier,
                             const std::string& chosen, bool new_parts);
+  void extend_face(const ViewState& view);
   void show_renewed_patient(const std::vector<Landmark>& landmarks);
   void want_motion(const MotionChoice& choice);
   void take_motion();
@@ -111,7 +112,8 @@ class ViewSession {
   CtImport ct_;
   PlanSession plan_;
   Job<std::shared_ptr<const SessionMotion>> moving_;
-  Job<bool> readying_;  // bones to slide
+  bool motion_lifts_brows_ = false;  // the present motion, see TissueSettings::upper_face
+  Job<bool> readying_;               // bones to slide
   Job<Saved> saving_;
   PreviewSession preview_;
   RecordingSession recording_;

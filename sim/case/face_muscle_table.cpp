@@ -10,6 +10,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/files.h"
+#include "engine/core/infinity.h"
 #include "engine/core/text_table.h"
 #include "sim/case/table_row.h"
 
@@ -37,6 +38,11 @@ const std::vector<std::pair<const char*, const char*>>& face_kinds() {
       {"depressor_labii_inferioris", "dli"},
       {"mentalis", "ment"},
       {"orbicularis_oculi", "oco"},
+      {"orbicularis_oculi_superior", "ocs"},
+      {"frontalis_medial", "frm"},
+      {"frontalis_lateral", "frl"},
+      {"corrugator", "cor"},
+      {"procerus", "pro"},
   };
   return all;
 }
@@ -57,6 +63,16 @@ std::map<std::string, std::size_t> face_columns(const std::filesystem::path& fil
                                    "(found \"{}\")",
                                    name, shortened(lines.line())));
   return columns;
+}
+
+std::vector<std::string> unused_columns(const std::map<std::string, std::size_t>& columns) {
+  static const std::set<std::string> known = {
+      "muscle", "full_name", "side",  "fibre",     "point", "x_mm",       "y_mm",
+      "z_mm",   "body",      "depth", "spread_mm", "law",   "shortening", "max_force_N"};
+  std::vector<std::string> unused;
+  for (const auto& column : columns)
+    if (!known.contains(column.first)) unused.push_back(column.first);
+  return unused;
 }
 
 std::string kind_of(const TableRow& row) {
@@ -135,6 +151,9 @@ class FaceTableReader {
   /// A new muscle, or that of earlier rows if they agree.
   FaceMuscle& muscle_called(const std::string& name, const std::string& kind, const TableRow& row) {
     FaceMuscle muscle{.name = name, .kind = kind, .lines = {}};
+    for (const char* column : {"max_force_N", "shortening"})
+      if (!row.text(column).empty() && !(row.number(column, 0, infinity) > 0))
+        row.refuse(column, "must be above 0; leave it empty for that of the muscle's kind");
     muscle.limit_N = row.number_or("max_force_N", 0, 0, strongest_face_N);
     muscle.shortening = row.number_or("shortening", 0, 0, most_shortening);
     muscle.law = row.chosen<FaceMuscleLaw>("law", {{"", FaceMuscleLaw::bounded},
@@ -173,6 +192,13 @@ bool is_face_muscle_kind(const std::string& kind) {
                      [&](const auto& known) { return kind == known.first; });
 }
 
+bool pulls_upper_face(const std::string& kind) {
+  constexpr std::array<std::string_view, 5> upper = {"orbicularis_oculi_superior",
+                                                     "frontalis_medial", "frontalis_lateral",
+                                                     "corrugator", "procerus"};
+  return std::find(upper.begin(), upper.end(), kind) != upper.end();
+}
+
 std::string face_muscle_side(const FaceMuscle& muscle) {
   for (const char* side : {"left", "right"})
     if (muscle.name == std::string(side) + "_" + muscle.kind) return side;
@@ -190,12 +216,17 @@ FaceMuscleTable read_face_muscles(const std::filesystem::path& file) {
       throw InputError(file, lines.where(), fmt::format("more than {} points", max_face_points));
     reader.add(TableRow(file, lines, columns));
   }
-  return {.muscles = std::move(reader).muscles(), .has_bodies = columns.contains("body")};
+  return {.muscles = std::move(reader).muscles(),
+          .has_bodies = columns.contains("body"),
+          .unused_columns = unused_columns(columns)};
 }
 
 std::string face_muscles_csv(const std::vector<FaceMuscle>& muscles) {
   std::string text =
       "muscle,side,fibre,point,x_mm,y_mm,z_mm,body,depth,spread_mm,max_force_N,shortening,law\n";
+  const auto of_muscle = [](double value) {  // 0: that of its kind
+    return value > 0 ? fmt::format("{}", value) : "";
+  };
   for (const FaceMuscle& m : muscles)
     for (std::size_t fibre = 0; fibre < m.lines.size(); ++fibre)
       for (std::size_t i = 0; i < m.lines[fibre].size(); ++i) {
@@ -203,8 +234,9 @@ std::string face_muscles_csv(const std::vector<FaceMuscle>& muscles) {
         const char* body = !p.bone ? "tissue" : *p.bone == cranium_body ? "cranium" : "mandible";
         text += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\n", m.kind, face_muscle_side(m),
                             fibre + 1, i, p.at.x(), p.at.y(), p.at.z(), body,
-                            p.depth ? fmt::format("{}", *p.depth) : "", p.spread_mm, m.limit_N,
-                            m.shortening, m.law == FaceMuscleLaw::hill ? "hill" : "bounded");
+                            p.depth ? fmt::format("{}", *p.depth) : "", p.spread_mm,
+                            of_muscle(m.limit_N), of_muscle(m.shortening),
+                            m.law == FaceMuscleLaw::hill ? "hill" : "bounded");
       }
   return text;
 }

@@ -12,11 +12,13 @@ namespace condyle {
 /// columns muscle, side (left, right, both), fibre, point, x_mm, y_mm, z_mm; optionally body
 /// (cranium, mandible; tissue, or empty), depth (0 at the skin to 1 at the inner side of the soft
 /// tissue; empty: where the point lies), spread_mm (0), max_force_N and shortening of the whole
-/// muscle (empty: those of its kind), law (bounded, hill). A muscle is a kind,
-/// "zygomaticus_major", or an abbreviation of one, "ZYG". Points are as given in the file.
+/// muscle (above 0; empty: those of its kind), law (bounded, hill), full_name (not used). A muscle
+/// is a kind, "zygomaticus_major", or an abbreviation of one, "ZYG". Points are as given in the
+/// file.
 struct FaceMuscleTable {
   std::vector<FaceMuscle> muscles;
   bool has_bodies = false;  // else nothing is known of the ends
+  std::vector<std::string> unused_columns = {};
 };
 
 /// throws: InputError with file, line, column and value.
@@ -27,6 +29,9 @@ std::string face_muscles_csv(const std::vector<FaceMuscle>& muscles);
 
 /// Whether force and shortening of this kind are known.
 bool is_face_muscle_kind(const std::string& kind);
+
+/// Whether muscles of this kind pull skin above the lower lids.
+bool pulls_upper_face(const std::string& kind);
 
 /// "left", "right", "both" by a muscle's name.
 std::string face_muscle_side(const FaceMuscle& muscle);

@@ -24,6 +24,10 @@ constexpr double same_end_mm = 0.1, point_every_mm = 6;
 constexpr double insertion_spread_mm = 5;
 /// mm; an end so near its insertion stays.
 constexpr double at_insertion = 2;
+/// mm; a fibre that ends farther from its insertion is another patient's, or in another frame.
+constexpr double most_led = 30;
+/// mm below the skin; what is deeper between the ends of a fibre lies in the mouth or the airway.
+constexpr double most_deep_between = 32;
 /// mm; farther outside the skin, below it, or from a named bone nothing is a muscle of the face.
 constexpr double most_outside = 6, most_below = 60, most_from_bone = 20;
 
@@ -97,6 +101,7 @@ class FaceMuscleImport {
       const bool closed = (fibre.front().at - fibre.back().at).norm() < same_end_mm;
       if (!named_ && !closed) attach(muscle, fibre, item);
       for (const FaceMusclePoint& point : fibre) check(point, item);
+      note_airway(fibre, item);
       divide(fibre);
     }
   }
@@ -107,6 +112,11 @@ class FaceMuscleImport {
                                far_ + "; their origins are fixed to the cranium");
     if (!crossing_.empty())
       patient_.notes.push_back("muscles of the face that pass through bone: " + crossing_);
+    if (!deep_.empty())
+      patient_.notes.push_back(
+          "muscles of the face that pass through the mouth or the airway, below the soft tissue of "
+          "the face: " +
+          deep_ + "; they pull along its inner side there");
   }
 
  private:
@@ -127,6 +137,12 @@ class FaceMuscleImport {
     else if (const auto& to = end ? end : mouth; to)
       turned = (fibre.front().at - *to).norm() < (fibre.back().at - *to).norm();
     if (turned) std::reverse(fibre.begin(), fibre.end());
+    if (end && (fibre.back().at - *end).norm() > most_led)
+      throw InputError(file_, item,
+                       fmt::format("ends at {}, {:.0f} mm from its insertion at the {} corner of "
+                                   "the mouth: check its side, unit (mm), frame and patient",
+                                   place(fibre.back().at), (fibre.back().at - *end).norm(),
+                                   left ? "left" : "right"));
     if (end && (fibre.back().at - *end).norm() > at_insertion) {
       lead_to(*end, fibre);
       fibre.back().depth = insertion_depth;
@@ -154,6 +170,15 @@ class FaceMuscleImport {
         if (!(inside > deep_mm) || bone->winding_number(point.at) < 0.5) continue;
         crossing_ += fmt::format("{}{} ({:.0f} mm deep at {})", crossing_.empty() ? "" : ", ", item,
                                  inside, place(point.at));
+        return;
+      }
+  }
+
+  void note_airway(const Fibre& fibre, const std::string& item) {
+    for (std::size_t i = 1; i + 1 < fibre.size(); ++i)
+      if (const double deep = -skin_->signed_distance(fibre[i].at); deep > most_deep_between) {
+        deep_ += fmt::format("{}{} ({:.0f} mm deep at {})", deep_.empty() ? "" : ", ", item, deep,
+                             place(fibre[i].at));
         return;
       }
   }
@@ -197,7 +222,7 @@ class FaceMuscleImport {
   TriangleTree cranium_, mandible_;
   std::optional<TriangleTree> skin_;
   bool named_ = false;
-  std::string far_, crossing_;
+  std::string far_, crossing_, deep_;
 };
 
 /// The fibres of one kind on both sides as closed loops, where each end meets another; else empty.
@@ -256,6 +281,10 @@ void import_face_muscles(const std::filesystem::path& file, const Eigen::Matrix3
     join_loops(table.muscles);
   for (FaceMuscle& muscle : table.muscles) import.complete(muscle);
   import.add_notes();
+  if (!table.unused_columns.empty())
+    patient.notes.push_back(fmt::format("{}: columns that are not used: {}",
+                                        file.filename().string(),
+                                        fmt::join(table.unused_columns, ", ")));
   std::size_t fibres = 0;
   for (const FaceMuscle& muscle : table.muscles) fibres += muscle.lines.size();
   patient.notes.push_back(fmt::format("muscles of the face: {} of {} fibres from {}",

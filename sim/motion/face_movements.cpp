@@ -54,7 +54,9 @@ void FaceMovements::finish(Motion& motion, const Case& patient) const {
     throw InputError(motion.name +
                      ": the patient has no muscles of the face for its expressions: the landmark " +
                      mark + " is missing");
-  motion.expression = expression_through(motion.name, keys_, muscles_of_face(patient)).at;
+  const Expression made = expression_through(motion.name, keys_, muscles_of_face(patient));
+  motion.expression = made.at;
+  motion.notes.insert(motion.notes.end(), made.notes.begin(), made.notes.end());
 }
 
 }  // namespace condyle

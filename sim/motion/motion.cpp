@@ -299,6 +299,21 @@ Motion motion_of(const std::string& spec, const Case& patient, const ContactMode
 
 }  // namespace
 
+bool motion_moves_upper_face(const std::string& spec) {
+  const auto& names = builtin_motions();
+  if (std::find(names.begin(), names.end(), spec) != names.end()) return false;
+  const bool file = looks_like_a_file(spec);
+  if (file ? ending_of(spec) != ".motion" : !is_motion_script(spec)) return false;
+  const MotionScript script =
+      parse_motion_script(file ? read_file(spec, largest_script) : spec, file ? spec : "motion");
+  return std::any_of(script.statements.begin(), script.statements.end(), [](const Statement& one) {
+    return std::any_of(one.face.begin(), one.face.end(), [](const FaceChange& change) {
+      const ExpressionLevel level{.name = change.expression, .left = change.strength};
+      return moves_upper_face({&level, 1});
+    });
+  });
+}
+
 void check_motion(const std::string& spec, const MotionSettings& settings) {
   check(settings);
   const auto& names = builtin_motions();

@@ -5,6 +5,8 @@
 #include <numbers>
 #include <optional>
 
+#include "sim/case/eyes.h"
+
 namespace condyle {
 namespace {
 
@@ -49,6 +51,14 @@ const std::vector<Straight>& straight_muscles() {
        {-15.5, -10.4, -7.5}, 12, 8, 3, 6, 0.2, 0.8, 0.5},
       {"mentalis", "infradentale", {6.5, 1.5, -5}, true, true, "soft_pogonion",
        {7.5, 1, 3}, 3, 3, 2, 9, 0.25, 0.8, 0.3},
+      {"frontalis_medial", "endocanthion", {-5, 3, 55}, false, false, "endocanthion",
+       {0, -10, 20}, 14, 14, 3, 16, 0.42, 0.5, 0.4},
+      {"frontalis_lateral", "endocanthion", {16, 12, 55}, false, false, "endocanthion",
+       {22, -3, 21}, 16, 16, 3, 16, 0.42, 0.5, 0.4},
+      {"corrugator", "endocanthion", {-12.3, -9, 18}, false, true, "endocanthion",
+       {9.7, -7, 25}, 5, 6, 2, 6, 0.3, 0.8, 0.3},
+      {"procerus", "endocanthion", {-15.3, -12.5, 2}, false, true, "endocanthion",
+       {-14, -19, 27}, 3, 4, 2, 4, 0.25, 0.7, 0.3},
   };
   // clang-format on
   return all;
@@ -70,12 +80,42 @@ const std::vector<Loop>& loops() {
   return all;
 }
 
-/// The outer part of orbicularis oculi below the eye: from the inner to the outer rim of the orbit.
+/// The outer part of orbicularis oculi from the inner to the outer rim of the orbit: `middle` is
+/// the place between them, each a landmark and an offset.
 struct EyeArc {
-  const char* kind = "orbicularis_oculi";
-  double limit_N = 4, shortening = 0.2, depth = 0.4, width_mm = 8;
-  int lines = 2;
+  struct Place {
+    const char* mark;
+    Vector3d offset;
+  };
+  const char* kind;
+  Place inner, outer, middle;
+  double limit_N, shortening, depth, width_mm;
+  int lines;
 };
+
+const std::vector<EyeArc>& eye_arcs() {
+  static const std::vector<EyeArc> all = {
+      {"orbicularis_oculi",
+       {"orbit_medial_rim", {0, 0, 0}},
+       {"orbit_lateral_rim", {4, 1, 0}},
+       {"orbitale", {2, -4, -10}},
+       4,
+       0.2,
+       0.4,
+       8,
+       2},
+      {"orbicularis_oculi_superior",
+       {"endocanthion", {-7.3, -2, 4.4}},
+       {"exocanthion", {5.8, 8, 2.5}},
+       {"endocanthion", {13.7, -4.6, 21}},
+       3,
+       0.15,
+       0.4,
+       6,
+       2},
+  };
+  return all;
+}
 
 struct Side {
   const char* name;
@@ -164,18 +204,18 @@ std::optional<FaceMuscle> loop(const Case& patient, const Loop& of) {
   return muscle;
 }
 
-/// Below the margin of the orbit.
 std::optional<FaceMuscle> eye_arc(const Case& patient, const EyeArc& of, const Side& side) {
-  const auto inner = placed(patient, side, "orbit_medial_rim", {0, 0, 0}),
-             outer = placed(patient, side, "orbit_lateral_rim", {4, 1, 0}),
-             below = placed(patient, side, "orbitale", {2, -4, -10});
-  if (!inner || !outer || !below) return std::nullopt;
+  const auto inner = placed(patient, side, of.inner.mark, of.inner.offset),
+             outer = placed(patient, side, of.outer.mark, of.outer.offset),
+             middle = placed(patient, side, of.middle.mark, of.middle.offset);
+  if (!inner || !outer || !middle) return std::nullopt;
   FaceMuscle muscle{.name = std::string(side.name) + "_" + of.kind,
                     .kind = of.kind,
                     .limit_N = of.limit_N,
                     .shortening = of.shortening,
                     .lines = {}};
-  const Vector3d center = 0.5 * (*inner + *outer), across = *inner - center, down = *below - center;
+  const Vector3d center = 0.5 * (*inner + *outer), across = *inner - center,
+                 away = *middle - center;
   for (int i = 0; i < of.lines; ++i) {
     const double t = (static_cast<double>(i) / (of.lines - 1) - 0.5) * of.width_mm;
     constexpr int count = 16;
@@ -183,7 +223,7 @@ std::optional<FaceMuscle> eye_arc(const Case& patient, const EyeArc& of, const S
     for (int n = 0; n <= count; ++n) {
       const double angle = std::numbers::pi * n / count;
       line.push_back({.at = center + std::cos(angle) * across +
-                            std::sin(angle) * (down + t * down.normalized()),
+                            std::sin(angle) * (away + t * away.normalized()),
                       .depth = of.depth});
     }
     line.front().bone = line.back().bone = cranium_body;
@@ -201,8 +241,7 @@ void give_strength(FaceMuscle& muscle) {
   };
   for (const Straight& of : straight_muscles()) give(of.kind, of.limit_N, of.shortening);
   for (const Loop& of : loops()) give(of.kind, of.limit_N, of.shortening);
-  const EyeArc eye;
-  give(eye.kind, eye.limit_N, eye.shortening);
+  for (const EyeArc& of : eye_arcs()) give(of.kind, of.limit_N, of.shortening);
 }
 
 /// A landmark that is missing where one of the patient's own muscles begins, as the default one of
@@ -224,6 +263,18 @@ void add_origins(const std::vector<FaceMuscle>& own, Case& patient) {
     }
 }
 
+/// Canthi that are not marked, by the openings of the eyes.
+void mark_canthi(const Case& patient, Landmarks& landmarks) {
+  const Part* face = patient.find(Role::face);
+  if (!face) return;
+  const auto eyes = find_eyes(face->mesh, landmarks);
+  if (!eyes) return;
+  landmarks.points.emplace("left_endocanthion", eyes->left.inner);
+  landmarks.points.emplace("left_exocanthion", eyes->left.outer);
+  landmarks.points.emplace("right_endocanthion", eyes->right.inner);
+  landmarks.points.emplace("right_exocanthion", eyes->right.outer);
+}
+
 }  // namespace
 
 std::string missing_face_landmark(const Case& patient) {
@@ -239,7 +290,8 @@ std::vector<FaceMuscle> default_face_muscles(const Case& patient) {
   for (const Side& side : {Side{"left", 1}, Side{"right", -1}}) {
     for (const Straight& of : straight_muscles())
       if (auto muscle = straight(patient, of, side)) muscles.push_back(std::move(*muscle));
-    if (auto muscle = eye_arc(patient, {}, side)) muscles.push_back(std::move(*muscle));
+    for (const EyeArc& of : eye_arcs())
+      if (auto muscle = eye_arc(patient, of, side)) muscles.push_back(std::move(*muscle));
   }
   for (const Loop& of : loops())
     if (auto muscle = loop(patient, of)) muscles.push_back(std::move(*muscle));
@@ -258,6 +310,7 @@ std::vector<FaceMuscle> muscles_of_face(const Case& patient) {
   Case marked;  // what the default muscles need
   marked.landmarks = patient.landmarks;
   marked.jaw = patient.jaw;
+  mark_canthi(patient, marked.landmarks);
   add_origins(muscles, marked);
   for (FaceMuscle& other : default_face_muscles(marked))
     if (std::none_of(muscles.begin(), muscles.begin() + static_cast<std::ptrdiff_t>(own),

@@ -10,11 +10,13 @@
 #include "engine/core/files.h"
 #include "engine/core/text_list.h"
 #include "engine/core/text_table.h"
+#include "sim/case/face_muscle_table.h"
 
 namespace condyle {
 namespace {
 
 constexpr double held_until_s = 1;
+constexpr std::size_t max_expression_bytes = std::size_t{16} << 20;
 
 std::filesystem::path file_of(const std::string& spec) { return spec; }
 
@@ -73,7 +75,6 @@ std::vector<double> excitations_of(std::span<const ExcitationColumn> columns, st
 }
 
 Expression expression_of_file(const std::string& spec, std::span<const FaceMuscle> muscles) {
-  constexpr std::size_t max_expression_bytes = std::size_t{16} << 20;
   const std::filesystem::path file = file_of(spec);
   const std::string text = read_file(file, max_expression_bytes);
   TextLines lines(text);
@@ -125,24 +126,31 @@ Expression expression_through(std::string name, std::span<const ExpressionKey> k
                               std::span<const FaceMuscle> muscles) {
   std::vector<double> times;
   std::vector<std::vector<double>> values;
+  std::vector<std::string> notes;
   for (const ExpressionKey& key : keys) {
+    const std::string missing = missing_kinds(key.levels, muscles);
+    if (!missing.empty() && std::find(notes.begin(), notes.end(), missing) == notes.end())
+      notes.push_back(missing);
     times.push_back(key.time_s);
     values.push_back(excitation_of(key.levels, muscles));
   }
   const double end_s = times.back();
   return {.name = std::move(name),
           .duration_s = end_s,
-          .at = [times = std::move(times), values = std::move(values)](double time_s) {
-            const auto next = static_cast<std::size_t>(
-                std::upper_bound(times.begin(), times.end(), time_s) - times.begin());
-            if (next == 0) return values.front();
-            if (next == times.size()) return values.back();
-            const double u = (time_s - times[next - 1]) / (times[next] - times[next - 1]);
-            const double s = u * u * (3 - 2 * u);
-            std::vector<double> now = values[next - 1];
-            for (std::size_t m = 0; m < now.size(); ++m) now[m] += s * (values[next][m] - now[m]);
-            return now;
-          }};
+          .at =
+              [times = std::move(times), values = std::move(values)](double time_s) {
+                const auto next = static_cast<std::size_t>(
+                    std::upper_bound(times.begin(), times.end(), time_s) - times.begin());
+                if (next == 0) return values.front();
+                if (next == times.size()) return values.back();
+                const double u = (time_s - times[next - 1]) / (times[next] - times[next - 1]);
+                const double s = u * u * (3 - 2 * u);
+                std::vector<double> now = values[next - 1];
+                for (std::size_t m = 0; m < now.size(); ++m)
+                  now[m] += s * (values[next][m] - now[m]);
+                return now;
+              },
+          .notes = std::move(notes)};
 }
 
 void check_expression(const std::string& spec) {
@@ -150,6 +158,19 @@ void check_expression(const std::string& spec) {
     parse_levels(spec);
   else if (!std::filesystem::is_regular_file(file_of(spec)))
     throw InputError(file_of(spec), "", "there is no such file");
+}
+
+bool expression_moves_upper_face(const std::string& spec) {
+  if (!names_file(spec)) return moves_upper_face(parse_levels(spec));
+  const std::string text = read_file(file_of(spec), max_expression_bytes);
+  TextLines lines(text);
+  if (!lines.next_filled()) return false;
+  const auto names = fields_of(lines.line(), ',');
+  return std::any_of(names.begin(), names.end(), [](std::string_view name) {
+    for (const std::string_view side : {"left_", "right_"})
+      if (name.starts_with(side)) name.remove_prefix(side.size());
+    return pulls_upper_face(std::string(name));
+  });
 }
 
 Expression make_expression(const std::string& spec, std::span<const FaceMuscle> muscles) {

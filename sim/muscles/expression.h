@@ -16,6 +16,7 @@ struct Expression {
   double duration_s = 0;
   /// One value from 0 to 1 for each muscle; constant beyond the ends.
   std::function<std::vector<double>(double time_s)> at;
+  std::vector<std::string> notes = {};  // on muscles that the patient lacks
 };
 
 /// Duration of the rise to an expression, and of the return to rest. source: the first stage of a
@@ -33,6 +34,10 @@ Expression expression_through(std::string name, std::span<const ExpressionKey> k
 
 /// Checks a name, its strength and its side, and that a file exists. throws: InputError.
 void check_expression(const std::string& spec);
+
+/// Whether it moves brows or forehead, see TissueSettings::upper_face. throws: InputError as
+/// check_expression().
+bool expression_moves_upper_face(const std::string& spec);
 
 /// Expressions and action units, NAME[:STRENGTH[:left|right]], several joined by "+" (their
 /// excitations add up), which begin at 0 s and are complete at 0.5 s; or a CSV file with a column

@@ -1,8 +1,10 @@
 #include "sim/muscles/expression_names.h"
 
 #include <algorithm>
+#include <set>
 
 #include "engine/core/text_table.h"
+#include "sim/case/face_muscle_table.h"
 
 namespace condyle {
 
@@ -23,15 +25,26 @@ const std::vector<NamedExpression>& named_expressions() {
         {"risorius", 0.3},
         {"depressor_labii_inferioris", 0.4},
         {"orbicularis_oculi", 0.5}}},
-      {"sad", "", {{"depressor_anguli_oris", 0.8}, {"mentalis", 0.3}}},
-      {"disgust", "", {{"levator_labii_alaeque_nasi", 0.8}, {"levator_labii_superioris", 0.6}}},
+      {"sad",
+       "",
+       {{"depressor_anguli_oris", 0.8},
+        {"mentalis", 0.3},
+        {"frontalis_medial", 0.6},
+        {"corrugator", 0.4}}},
+      {"surprise", "", {{"frontalis_medial", 1}, {"frontalis_lateral", 1}}},
+      {"disgust",
+       "",
+       {{"levator_labii_alaeque_nasi", 0.8}, {"levator_labii_superioris", 0.6}, {"procerus", 0.4}}},
       {"kiss",
        "",
        {{"orbicularis_oris_peripheral", 0.8},
         {"orbicularis_oris_marginal", 0.3},
         {"buccinator", 0.2},
         {"mentalis", 0.3}}},
-      {"AU6", "cheek raiser", {{"orbicularis_oculi", 1}}},
+      {"AU1", "inner brow raiser", {{"frontalis_medial", 1}}},
+      {"AU2", "outer brow raiser", {{"frontalis_lateral", 1}}},
+      {"AU4", "brow lowerer", {{"corrugator", 1}, {"procerus", 1}}},
+      {"AU6", "cheek raiser", {{"orbicularis_oculi", 1}, {"orbicularis_oculi_superior", 1}}},
       {"AU9", "nose wrinkler", {{"levator_labii_alaeque_nasi", 1}}},
       {"AU10", "upper lip raiser", {{"levator_labii_superioris", 1}}},
       {"AU11", "nasolabial deepener", {{"zygomaticus_minor", 1}}},
@@ -52,6 +65,15 @@ const NamedExpression* find_expression(std::string_view name) {
   for (const NamedExpression& each : named_expressions())
     if (lower_case(each.name) == wanted) return &each;
   return nullptr;
+}
+
+bool moves_upper_face(std::span<const ExpressionLevel> levels) {
+  return std::any_of(levels.begin(), levels.end(), [](const ExpressionLevel& level) {
+    const NamedExpression* expression = find_expression(level.name);
+    return expression && std::max(level.left, level.right) > 0 &&
+           std::any_of(expression->kinds.begin(), expression->kinds.end(),
+                       [](const KindExcitation& of) { return pulls_upper_face(of.kind); });
+  });
 }
 
 std::vector<std::string> builtin_expressions() {
@@ -86,6 +108,28 @@ std::vector<double> excitation_of(std::span<const ExpressionLevel> levels,
   }
   for (double& value : values) value = std::clamp(value, 0.0, 1.0);
   return values;
+}
+
+std::string missing_kinds(std::span<const ExpressionLevel> levels,
+                          std::span<const FaceMuscle> muscles) {
+  std::string expressions, kinds;
+  std::set<std::string> missing;
+  for (const ExpressionLevel& level : levels) {
+    const NamedExpression* expression = find_expression(level.name);
+    if (!expression || std::max(level.left, level.right) <= 0) continue;
+    bool complete = true;
+    for (const auto& of : expression->kinds) {
+      if (std::any_of(muscles.begin(), muscles.end(),
+                      [&](const FaceMuscle& muscle) { return muscle.kind == of.kind; }))
+        continue;
+      complete = false;
+      if (missing.insert(of.kind).second) kinds += (kinds.empty() ? "" : ", ") + of.kind;
+    }
+    if (!complete) expressions += (expressions.empty() ? "" : ", ") + level.name;
+  }
+  if (kinds.empty()) return {};
+  return expressions + ": the patient lacks muscles of the kinds " + kinds +
+         ", as the case has none and landmarks for default ones are missing";
 }
 
 std::vector<double> added_excitations(std::vector<double> a, std::span<const double> b) {

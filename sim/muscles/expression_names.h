@@ -32,6 +32,9 @@ const std::vector<NamedExpression>& named_expressions();
 /// Null: there is none. Case does not count.
 const NamedExpression* find_expression(std::string_view name);
 
+/// Whether one of them pulls skin above the lower lids, see TissueSettings::upper_face.
+bool moves_upper_face(std::span<const ExpressionLevel> levels);
+
 /// Names of the built-in expressions, without action units.
 std::vector<std::string> builtin_expressions();
 /// All names, as "smile, sad, AU9": for messages.
@@ -41,6 +44,10 @@ std::string list_expressions();
 /// are excited as the stronger side. Unknown names excite nothing.
 std::vector<double> excitation_of(std::span<const ExpressionLevel> levels,
                                   std::span<const FaceMuscle> muscles);
+
+/// A sentence on the kinds of muscles that the levels excite and the face lacks; empty: none.
+std::string missing_kinds(std::span<const ExpressionLevel> levels,
+                          std::span<const FaceMuscle> muscles);
 
 /// The sums, at most 1; the shorter list counts as 0 beyond its end.
 std::vector<double> added_excitations(std::vector<double> a, std::span<const double> b);

@@ -8,7 +8,9 @@
 #include <utility>
 
 #include "engine/core/units.h"
+#include "sim/case/eyes.h"
 #include "sim/muscles/expression_names.h"
+#include "sim/tissue/model.h"
 
 namespace condyle {
 namespace {
@@ -20,26 +22,33 @@ struct FacePoint {
   Vector3d moved() const { return now - rest; }
 };
 
-bool is_full_smile(std::span<const double> excitation, std::span<const FaceMuscle> muscles) {
-  const ExpressionLevel full{.name = "smile", .left = 1, .right = 1};
-  const std::vector<double> smile = excitation_of({&full, 1}, muscles);
+/// Whether the excitation is that of expressions at full strength on both sides.
+bool is_full(std::initializer_list<const char*> names, std::span<const double> excitation,
+             std::span<const FaceMuscle> muscles) {
+  std::vector<ExpressionLevel> full;
+  for (const char* name : names) full.push_back({.name = name, .left = 1, .right = 1});
+  const std::vector<double> smile = excitation_of(full, muscles);
   return std::equal(smile.begin(), smile.end(), excitation.begin(), excitation.end(),
                     [](double a, double b) { return std::abs(a - b) < 1e-6; });
 }
 
-/// Collects findings; ranges count for a full smile alone.
+/// Collects findings; ranges count for the full expression alone that they are of.
 struct Collected {
   std::vector<Finding> list;
-  bool smile = false;
+  bool smile = false, brows_lifted = false, frown = false;
 
   void add(const std::string& name, const char* unit, double value, double low = 1, double high = 0,
            const char* published = "", bool input = true, const char* why = "") {
+    add_for(smile, name, unit, value, low, high, published, input, why);
+  }
+  void add_for(bool full, const std::string& name, const char* unit, double value, double low,
+               double high, const char* published, bool input = true, const char* why = "") {
     list.push_back({.name = name,
                     .unit = unit,
                     .value = value,
-                    .low = smile ? low : 1,
-                    .high = smile ? high : 0,
-                    .published = smile ? published : "",
+                    .low = full ? low : 1,
+                    .high = full ? high : 0,
+                    .published = full ? published : "",
                     .input = input,
                     .why = why});
   }
@@ -66,6 +75,24 @@ void add_corners(const FacePoint& left, const FacePoint& right, Collected& to) {
            100 * std::abs(a - b) / more);
   to.add("change of the mouth's width", "%",
          100 * ((left.now - right.now).norm() / (left.rest - right.rest).norm() - 1), 20, 35, "27");
+}
+
+/// The brows' middles above the line between the canthi, and their inner ends. They are fitted,
+/// too.
+void add_brows(const Eyes& eyes, const auto& point_at, Collected& to) {
+  const Vector3d above_eye(0, -9, 21);
+  for (const auto& [side, eye] : {std::pair("left", &eyes.left), std::pair("right", &eyes.right)}) {
+    const double sign = eye == &eyes.left ? 1 : -1;
+    const std::string name = std::string(side) + " brow";
+    const Vector3d middle = point_at(0.5 * (eye->inner + eye->outer) + above_eye).moved(),
+                   inner = point_at(eye->inner + above_eye + sign * Vector3d(3, 0, 0)).moved();
+    to.add_for(to.brows_lifted, name + ": displacement upward", "mm", middle.z(), 8.1, 13.1,
+               "10.6 +- 2.5");
+    to.add_for(to.frown, name + ", inner end: displacement", "mm", inner.norm(), 4.3, 10.9,
+               "7.6 +- 3.3");
+    to.add(name + ", inner end: displacement inward", "mm", -sign * inner.x());
+    to.add(name + ", inner end: displacement upward", "mm", inner.z());
+  }
 }
 
 /// From the lower margin of the orbit to the skin of the cheek before it.
@@ -122,7 +149,10 @@ ExpressionMeasures expression_measures(const Scene& scene, const TissueState& ti
   ExpressionMeasures measures;
   if (!scene.tissue || tissue.excitation.empty()) return measures;
   const auto& muscles = face_muscles_of(*scene.tissue);
-  Collected found{.list = {}, .smile = is_full_smile(tissue.excitation, muscles)};
+  Collected found{.list = {},
+                  .smile = is_full({"smile"}, tissue.excitation, muscles),
+                  .brows_lifted = is_full({"surprise"}, tissue.excitation, muscles),
+                  .frown = is_full({"AU4"}, tissue.excitation, muscles)};
   const TissueState at_rest = rest_tissue(*scene.tissue);
   const auto point = [&](const std::string& name,
                          const Vector3d& offset = Vector3d::Zero()) -> std::optional<FacePoint> {
@@ -156,6 +186,18 @@ ExpressionMeasures expression_measures(const Scene& scene, const TissueState& ti
   for (const std::string side : {"left", "right"})
     if (const auto cheek = point(side + "_orbitale", below_orbit))
       found.add(side + " cheek below the orbit: displacement upward", "mm", cheek->moved().z());
+  const Part* face = scene.patient.find(Role::face);
+  const auto eyes = face && scene.tissue->display->region.upper_face
+                        ? find_eyes(face->mesh, scene.patient.landmarks)
+                        : std::nullopt;
+  if (eyes)
+    add_brows(
+        *eyes,
+        [&](const Vector3d& at) {
+          return FacePoint{carried_point(*scene.tissue, at_rest, at),
+                           carried_point(*scene.tissue, tissue, at)};
+        },
+        found);
   const auto length = face_muscle_lengths(*scene.tissue, tissue),
              rest_length = face_muscle_lengths(*scene.tissue, at_rest);
   for (std::size_t m = 0; m < muscles.size(); ++m)

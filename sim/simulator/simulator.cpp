@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "engine/core/user_cache.h"
+#include "sim/case/face_muscle_table.h"
 #include "sim/frame/state_hash.h"
 #include "sim/motion/closed_position.h"
 #include "sim/motion/measure_pose.h"
@@ -50,6 +51,7 @@ bool same_for_tissue(const Case& a, const Case& b) {
   };
   const auto x = parts(a), y = parts(b);
   return a.jaw == b.jaw && a.landmarks.points == b.landmarks.points &&
+         face_muscles_csv(a.face_muscles) == face_muscles_csv(b.face_muscles) &&
          std::equal(x.begin(), x.end(), y.begin(), y.end(), [](const Part* p, const Part* q) {
            return p->name == q->name && p->role == q->role && p->body == q->body &&
                   same_mesh(p->mesh, q->mesh);

@@ -12,6 +12,7 @@
 namespace condyle {
 namespace {
 
+using Eigen::Vector3d;
 using namespace tissue_defaults;
 
 /// Amount of tissue each column represents, relative to a column of the default mesh: an area, or
@@ -87,6 +88,21 @@ class Anchoring {
           add(node(c, s), 0, rim_stiffness, AnchorKind::rim);
           ++summary_.boundary;
         }
+  }
+
+  /// The lids keep their places on the eyeballs.
+  void to_lids() {
+    if (!from_.skin.eyes) return;
+    for (int c = 0; c < mesh_.columns; ++c) {
+      if (from_.skin.rim[c]) continue;
+      const Vector3d& p = from_.skin.mesh.vertices[c];
+      const double distance =
+          std::min(from_.skin.eyes->left.distance(p), from_.skin.eyes->right.distance(p));
+      const double held = 1 - smooth_step((distance - lid_mm) / lid_fades_mm);
+      if (held <= 0) continue;
+      for (int s = 0; s < mesh_.sheets; ++s)
+        add(node(c, s), 0, held * lid_stiffness, AnchorKind::cartilage);
+    }
   }
 
   /// A free border of the face (a mask that ends below the jaw) follows the mandible by as much as
@@ -176,6 +192,7 @@ std::vector<char> add_anchors(const AnchorSource& from, TissueMesh& mesh, Tissue
   Anchoring anchoring(from, mesh, support, summary);
   anchoring.to_bone();
   anchoring.to_rim();
+  anchoring.to_lids();
   anchoring.to_border();
   return anchoring.loosely();
 }

@@ -18,6 +18,15 @@ bool on_lip(const CoarseSkin& skin, std::size_t v, const Column& column) {
          column.to_mouth < std::min(to(skin.mouth.right_corner), to(skin.mouth.left_corner));
 }
 
+/// Brows and forehead glide on the skull between the temporal lines, down to the orbit's upper
+/// margin and the root of the nose.
+bool glides_on_forehead(const CoarseSkin& skin, const Eigen::Vector3d& p) {
+  constexpr double above_eyes_mm = 9, to_temporal_line_mm = 56;
+  return skin.eyes && p.z() > skin.eyes->height() + above_eyes_mm &&
+         std::abs(p.x() - 0.5 * (skin.eyes->left.inner + skin.eyes->right.inner).x()) <
+             to_temporal_line_mm;
+}
+
 }  // namespace
 
 void attach_columns(const CoarseSkin& skin, const Anatomy& anatomy, const JawBodies& jaw,
@@ -31,6 +40,7 @@ void attach_columns(const CoarseSkin& skin, const Anatomy& anatomy, const JawBod
   for (std::size_t v = 0; v < columns.size(); ++v) {
     Column& c = columns[v];
     const Eigen::Vector3d& p = skin.mesh.vertices[v];
+    if (c.met_globe || glides_on_forehead(skin, p)) continue;
     const double above_bite = p.z() - anatomy.bite_height(p.y());
     const bool mouth_side = c.to_mouth < lip_margin_mm;
     // The nose is supported by cartilage, which moves with the cranium.

@@ -98,7 +98,8 @@ Build prepare(const Case& patient, const TissueSettings& settings, const TriMesh
   Build build(patient, settings);
   build.asked_layers = layers_of(build.plan);
   build.anatomy = read_anatomy(patient, summary.notes);
-  build.region = cut_region(face, patient.landmarks, build.anatomy, summary.notes);
+  build.region =
+      cut_region(face, patient.landmarks, build.anatomy, settings.upper_face, summary.notes);
   build.skin = make_coarse_skin(build.region, settings.surface_nodes);
   return build;
 }
@@ -212,7 +213,8 @@ std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const Tissu
   report(progress, "soft tissue: displayed face", 0.8);
   model->display = display.get();
 
-  model->muscles = muscles_in_mesh(*mesh, model->support, settings.face_muscles);
+  model->muscles = muscles_in_mesh(*mesh, model->support, settings.face_muscles,
+                                   model->display->region.upper_face);
   summary.nodes = mesh->elements.node_count;
   summary.springs =
       static_cast<int>(mesh->elements.spring_a.size() + mesh->elements.anchor_node.size());

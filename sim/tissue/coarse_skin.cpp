@@ -14,9 +14,19 @@ using Eigen::Vector3d;
 /// Factor by which edges may be longer than at the lips, by the distance to the mouth (mm).
 double coarseness(double to_mouth) { return 1 + 1.6 * std::clamp((to_mouth - 6) / 70, 0.0, 1.0); }
 
+/// The same by the distance to an eye.
+double coarseness_at_eye(double to_eye) {
+  return 1.5 + 1.1 * std::clamp((to_eye - 8) / 35, 0.0, 1.0);
+}
+
+double to_eyes(const SkinRegion& region, const Vector3d& p) {
+  return std::min(region.eyes->left.distance(p), region.eyes->right.distance(p));
+}
+
 }  // namespace
 
-CoarseSkin make_coarse_skin(const SkinRegion& region, int nodes) {
+CoarseSkin make_coarse_skin(const SkinRegion& region, int lower_nodes) {
+  constexpr double lid_mm = 12;  // from the line between the canthi
   const TriMesh& fine = region.mesh;
   std::vector<Vector3d> lips;
   for (const auto* run : {&region.mouth.upper, &region.mouth.lower})
@@ -28,19 +38,33 @@ CoarseSkin make_coarse_skin(const SkinRegion& region, int nodes) {
     return std::sqrt(best);
   };
 
-  // A uniform triangle mesh with edges of length l has 2 / sqrt(3) / l^2 vertices per area.
-  double expected = 0;
+  const auto factor = [&](const Vector3d& p) {
+    const double by_mouth = coarseness(to_mouth(p));
+    return region.eyes ? std::min(by_mouth, coarseness_at_eye(to_eyes(region, p))) : by_mouth;
+  };
+
+  // A uniform triangle mesh with edges of length l has 2 / sqrt(3) / l^2 vertices per area. The
+  // upper face has nodes beyond those of the lower.
+  RegionShape lower = region.shape;
+  lower.upper_face = false;
+  double expected = 0, of_lower = 0;
   for (const auto& t : fine.triangles) {
     const Vector3d &a = fine.vertices[t[0]], &b = fine.vertices[t[1]], &c = fine.vertices[t[2]];
-    const double l = coarseness(to_mouth((a + b + c) / 3));
-    expected += 0.5 * (b - a).cross(c - a).norm() * 2 / std::sqrt(3.0) / (l * l);
+    const Vector3d centre = (a + b + c) / 3;
+    const double area = 0.5 * (b - a).cross(c - a).norm() * 2 / std::sqrt(3.0);
+    const double l = factor(centre);
+    expected += area / (l * l);
+    if (!region.eyes) continue;
+    const double l_lower = coarseness(to_mouth(centre));
+    if (lower.inside(centre) > 0) of_lower += area / (l_lower * l_lower);
   }
+  const double nodes = region.eyes ? std::round(lower_nodes * expected / of_lower) : lower_nodes;
   double scale = std::sqrt(expected / nodes);
   RemeshSettings settings;
   if (region.mouth.found()) settings.pinned = {region.mouth.right_corner, region.mouth.left_corner};
   Remeshed coarse;
   for (int attempt = 0; attempt < 3; ++attempt) {
-    settings.edge_length = [&](const Vector3d& p) { return scale * coarseness(to_mouth(p)); };
+    settings.edge_length = [&](const Vector3d& p) { return scale * factor(p); };
     coarse = remesh(fine, settings);
     const double got = static_cast<double>(coarse.mesh.vertices.size());
     if (std::abs(got / nodes - 1) < 0.04) break;
@@ -48,6 +72,7 @@ CoarseSkin make_coarse_skin(const SkinRegion& region, int nodes) {
   }
 
   CoarseSkin skin;
+  skin.eyes = region.eyes;
   skin.mesh = std::move(coarse.mesh);
   skin.rim.assign(skin.mesh.vertices.size(), 0);
   skin.border.assign(skin.mesh.vertices.size(), 0);
@@ -74,6 +99,9 @@ CoarseSkin make_coarse_skin(const SkinRegion& region, int nodes) {
           best = (p - skin.mesh.vertices[v]).squaredNorm();
           kind = k;
         }
+      // The margins of the lids are no border that follows a jaw.
+      if (kind == Kind::border && skin.eyes && to_eyes(region, skin.mesh.vertices[v]) < lid_mm)
+        continue;
       (kind == Kind::rim ? skin.rim : skin.border)[v] = 1;
     }
   }

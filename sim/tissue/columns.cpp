@@ -48,9 +48,28 @@ std::vector<Vector3d> smooth_inward(const CoarseSkin& skin,
   return inward;
 }
 
+/// Where the ray from a point meets an eyeball, mm; 0 inside of it.
+std::optional<double> to_globe(const Vector3d& from, const Vector3d& along, const Vector3d& globe) {
+  constexpr double radius_mm = 12.2;
+  const Vector3d across = globe - from;
+  const double middle = across.dot(along);
+  const double half = radius_mm * radius_mm - (across - middle * along).squaredNorm();
+  if (half < 0 || middle < 0) return std::nullopt;
+  return std::max(0.0, middle - std::sqrt(half));
+}
+
 void march(const CoarseSkin& skin, const Bones& bones, const ColumnSettings& settings,
            std::size_t v, Column& column) {
   const Vector3d& p = skin.mesh.vertices[v];
+  if (skin.eyes)
+    for (const Eye* eye : {&skin.eyes->left, &skin.eyes->right})
+      if (const auto met = to_globe(p, column.inward, eye->globe)) {
+        column.support = bones.jaw.upper_arch;
+        column.met_globe = true;
+        column.met_depth = *met;
+        column.met_normal = (p + *met * column.inward - eye->globe).normalized();
+        return;
+      }
   const auto cranium = bones.cranium.empty()
                            ? std::nullopt
                            : bones.cranium.ray_cast(p, column.inward, settings.march_mm);

@@ -19,7 +19,7 @@ struct Column {
   Eigen::Vector3d inward = Eigen::Vector3d::Zero();  // unit
   double depth = 0;                                  // mm, of the innermost node
   std::optional<BodyId> support;                     // body of the bone hit within reach
-  bool met_teeth = false;
+  bool met_teeth = false, met_globe = false;
   double met_depth = 0;                                  // mm, of the surface that was hit
   Eigen::Vector3d met_normal = Eigen::Vector3d::Zero();  // outward, of the surface that was hit
   std::optional<BodyId> attached_to;  // body that the innermost node is attached to
@@ -34,6 +34,7 @@ struct CoarseSkin {
   std::vector<char> rim;     // fixed
   std::vector<char> border;  // on a free border of the face, the mouth excluded
   MouthOutline mouth;
+  std::optional<Eyes> eyes;  // of a sheet that goes on around them
 };
 
 struct ColumnSettings {

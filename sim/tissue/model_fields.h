@@ -93,9 +93,10 @@ void fields(Archive& archive, FaceDisplay& display) {
   Anatomy& anatomy = display.region.anatomy;
   HandleSet& handles = display.handles;
   archive(anatomy.condyles, anatomy.incisors, anatomy.mandible_low, anatomy.mandible_back,
-          display.region.floor_z, display.fissure, handles.node, handles.first_neighbour,
-          handles.neighbour, handles.inverse_spread, handles.ring, display.handle_evened,
-          display.handle_side, display.carried_vertex, display.carried, display.face_side);
+          display.region.floor_z, display.region.upper_face, display.region.forehead_z,
+          display.fissure, handles.node, handles.first_neighbour, handles.neighbour,
+          handles.inverse_spread, handles.ring, display.handle_evened, display.handle_side,
+          display.carried_vertex, display.carried, display.face_side);
 }
 
 template <class Archive>

@@ -7,6 +7,7 @@
 
 #include "engine/math/smooth_step.h"
 #include "engine/tissue/layered_mesh.h"
+#include "sim/case/face_muscle_table.h"
 #include "sim/tissue/model.h"
 
 namespace condyle {
@@ -179,10 +180,11 @@ std::vector<double> anchor_scales(const TissueMuscles& muscles, std::span<const 
 }
 
 TissueMuscles muscles_in_mesh(const TissueMesh& mesh, const TissueSupport& support,
-                              std::vector<FaceMuscle> muscles) {
+                              std::vector<FaceMuscle> muscles, bool upper_face) {
   TissueMuscles made;
   for (std::size_t m = 0; m < muscles.size(); ++m) {
     const FaceMuscle& muscle = muscles[m];
+    if (!upper_face && pulls_upper_face(muscle.kind)) continue;
     for (const auto& points : muscle.lines) {
       TissueMuscles::Line line{
           .muscle = static_cast<int>(m),

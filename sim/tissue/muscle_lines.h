@@ -38,8 +38,9 @@ struct TissueMuscles {
   std::vector<Yielding> yielding;
 };
 
+/// Without `upper_face`, muscles above the lower lids have no lines: the mesh ends below them.
 TissueMuscles muscles_in_mesh(const TissueMesh& mesh, const TissueSupport& support,
-                              std::vector<FaceMuscle> muscles);
+                              std::vector<FaceMuscle> muscles, bool upper_face);
 
 /// Stiffness of each anchor over that at rest; empty when no muscle is active.
 std::vector<double> anchor_scales(const TissueMuscles& muscles, std::span<const double> excitation,

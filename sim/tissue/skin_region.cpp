@@ -240,10 +240,11 @@ std::vector<char> triangles_inside(const TriMesh& mesh, const RegionShape& shape
 
 double RegionShape::inside(const Vector3d& p) const {
   const double height = p.z() - anatomy.condyles.z();
-  // Upper border: below the eyes. Posterior border: in front of the ear, and below the ear lobe
-  // around to the side of the neck.
-  const double top = 13 - height;
-  const double back_limit = anatomy.condyles.y() + 3 + 72 * smooth_step((-24 - height) / 40);
+  // Upper border: below the eyes, or on the forehead. Posterior border: in front of the ear, below
+  // the ear lobe around to the side of the neck, and above the ear across the temple.
+  const double top = upper_face ? forehead_z - p.z() : 13 - height;
+  const double back_limit = anatomy.condyles.y() + 3 + 72 * smooth_step((-24 - height) / 40) -
+                            (upper_face ? 28 * smooth_step((height - 15) / 30) : 0);
   // This border is steep, so it is nearer than along y.
   constexpr double steepness = 0.45;
   const double back = steepness * (back_limit - p.y());
@@ -251,7 +252,8 @@ double RegionShape::inside(const Vector3d& p) const {
 }
 
 SkinRegion cut_region(const TriMesh& face, const Landmarks& landmarks, const Anatomy& anatomy,
-                      std::vector<std::string>& notes) {
+                      bool upper_face, std::vector<std::string>& notes) {
+  constexpr double forehead_mm = 60;  // above the eyes
   SkinRegion region;
   TriMesh mesh{face.vertices, face.triangles, {}};
   std::vector<int> source(mesh.vertices.size());
@@ -274,6 +276,14 @@ SkinRegion cut_region(const TriMesh& face, const Landmarks& landmarks, const Ana
     for (int v : loop) on_own_border[v] = 1;
 
   region.shape.anatomy = anatomy;
+  if (upper_face) region.eyes = find_eyes(face, landmarks);
+  region.shape.upper_face = region.eyes.has_value();
+  if (region.eyes) region.shape.forehead_z = region.eyes->height() + forehead_mm;
+  if (upper_face && !region.eyes)
+    notes.push_back(
+        "the face has no openings of the eyes and no landmarks left_endocanthion, "
+        "left_exocanthion, right_endocanthion and right_exocanthion: brows and forehead do not "
+        "move");
   // A closed bust has a flat underside, which is no skin; far below the jaw nothing moves. A mask
   // ends above that: its own rim may move.
   const Box box = bounding_box(mesh);

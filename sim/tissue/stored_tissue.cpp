@@ -28,6 +28,7 @@ std::uint64_t hash_of(const std::string& text, std::uint64_t h) {
 std::uint64_t inputs_of(const Case& patient, const TissueSettings& settings) {
   const JawBodies& jaw = patient.jaw;
   const std::size_t numbers[] = {static_cast<std::size_t>(settings.surface_nodes),
+                                 static_cast<std::size_t>(settings.upper_face),
                                  usable_float_kernels().size(),
                                  usable_element_kernels().size(),
                                  index_of(jaw.upper_arch),
@@ -114,7 +115,8 @@ std::shared_ptr<const TissueModel> model_from(std::string_view bytes, const Case
   model->display = std::make_shared<const FaceDisplay>(std::move(stored.display));
   model->summary = std::move(stored.summary);
   model->factors = std::make_shared<const PathFactors>(*model, settings.threads);
-  model->muscles = muscles_in_mesh(*model->mesh, model->support, settings.face_muscles);
+  model->muscles = muscles_in_mesh(*model->mesh, model->support, settings.face_muscles,
+                                   model->display->region.upper_face);
   return model;
 }
 

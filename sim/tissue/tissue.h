@@ -21,6 +21,9 @@ struct TissueSettings {
   /// Approximate number per sheet. A finer mesh models the same tissue: attachment per area is the
   /// same, and layers are divided until springs fill them evenly (split_layers).
   int surface_nodes = 520;
+  /// Also simulates the skin around the eyes and up over the forehead, with nodes of its own. For
+  /// expressions that move the brows: it takes longer, and other expressions differ slightly.
+  bool upper_face = false;
   TissuePlan plan = {};                       // takes precedence over the case's own
   std::vector<FaceMuscle> face_muscles = {};  // without excitation they change nothing
   int threads = 2;  // of the builder; the model is bit-identical for any number

@@ -11,8 +11,11 @@ namespace condyle::tissue_defaults {
 constexpr double bone_stiffness = 2.0;       // grown on bone: about 50 times a skin spring
 constexpr double rim_stiffness = 2.0;        // the cut towards the rest of the face
 constexpr double cartilage_stiffness = 0.5;  // the nose; fitted (B, C)
-constexpr double neck_stiffness = 0.1;       // inner side of the throat; fitted (B, C)
-constexpr double loose_stiffness = 0.15;     // loose tissue on both jaws; fitted (B, C)
+/// The plates in the lids, which tendons hold at both canthi: whole up to the first distance from
+/// the line between these, and not at all the second one farther, mm.
+constexpr double lid_stiffness = 0.5, lid_mm = 6, lid_fades_mm = 6;
+constexpr double neck_stiffness = 0.1;    // inner side of the throat; fitted (B, C)
+constexpr double loose_stiffness = 0.15;  // loose tissue on both jaws; fitted (B, C)
 /// Above the inner side under the chin: fat and platysma are connected to jaw and neck through
 /// their whole depth. Without this the skin snaps from fold to fold as the mouth opens; fitted (B).
 constexpr double platysma_stiffness = 0.05;

@@ -57,6 +57,7 @@ TEST_F(FaceMuscleFiles, ATableReadsBackAsWritten) {
   EXPECT_FALSE(zygomaticus.lines[1][1].depth);
   EXPECT_EQ(first.muscles[1].name, "orbicularis_oris_marginal");
   EXPECT_EQ(first.muscles[1].limit_N, 0);
+  EXPECT_TRUE(first.unused_columns.empty());
   const std::string text = face_muscles_csv(first.muscles);
   EXPECT_EQ(face_muscles_csv(read_face_muscles(folder_.write("g.csv", text)).muscles), text);
 }
@@ -81,6 +82,8 @@ TEST_F(FaceMuscleFiles, BadRowsAreRefusedByLineColumnAndValue) {
   expect_refused(rows("zyg,left,1,0,1,2,3,,,0,4,0.2,spring\n"), {"law", "spring", "hill"});
   expect_refused(rows("zyg,up,1,0,1,2,3,,,0,4,0.2,\n"), {"line 2, side", "up", "left"});
   expect_refused(rows("flap,left,1,0,1,2,3,,,0,,,\n"), {"max_force_N", "left_flap"});
+  expect_refused(rows("zyg,left,1,0,1,2,3,,,0,0,0.2,\n"), {"line 2, max_force_N", "above 0"});
+  expect_refused(rows("zyg,left,1,0,1,2,3,,,0,4,0,\n"), {"line 2, shortening", "above 0"});
   expect_refused(rows(good + "zyg,left,1,1,1,2,9,,,0,4,0.2,\nzyg,left,2,0,1,2,3,,,0,4,0.2,\n" +
                       "zyg,left,2,1,1,2,9,,,0,4,0.2,\nzyg,left,1,2,1,2,20,,,0,4,0.2,\n"),
                  {"line 6, fibre", "appears twice"});
@@ -132,6 +135,38 @@ TEST_F(FaceMuscleImports, EndsAreCompletedWhereTheFileDoesNotNameThem) {
   ASSERT_EQ(patient.face_muscles[1].lines.size(), 1u);
   EXPECT_EQ(patient.face_muscles[1].lines[0].front().at,
             patient.face_muscles[1].lines[0].back().at);
+}
+
+bool has_note(const Case& patient, const std::string& words) {
+  return std::any_of(patient.notes.begin(), patient.notes.end(), [&](const std::string& note) {
+    return note.find(words) != std::string::npos;
+  });
+}
+
+TEST_F(FaceMuscleImports, FibresAreNotLedToTheMouthFromFarAway) {
+  try {
+    import("ZYG,left,1,0,50,-51,20\nZYG,left,1,1,40,-52,-5\n", false);
+    FAIL();
+  } catch (const InputError& error) {
+    const std::string message = error.what();
+    for (const char* words : {"left_zygomaticus_major, fibre 1", "left corner", "37 mm"})
+      EXPECT_NE(message.find(words), std::string::npos) << message;
+  }
+}
+
+TEST_F(FaceMuscleImports, FibresThroughTheAirwayAreNoted) {
+  const std::string ends[] = {"ris,left,1,0,50,-59,-40,tissue\n",
+                              "ris,left,1,2,26,-59,-40,tissue\n"};
+  EXPECT_FALSE(has_note(import(ends[0] + "ris,left,1,1,40,-50,-40,tissue\n" + ends[1]), "airway"));
+  EXPECT_TRUE(has_note(import(ends[0] + "ris,left,1,1,35,-20,-40,tissue\n" + ends[1]),
+                       "left_risorius, fibre 1 (35 mm deep"));
+}
+
+TEST_F(FaceMuscleImports, ColumnsThatAreNotUsedAreNoted) {
+  const FaceMuscleTable table = read_face_muscles(
+      folder_.write("g.csv", columns + ",max_force,full_name\nzyg,left,1,0,1,2,3,9,z\n"
+                                       "zyg,left,1,1,1,2,9,9,z\n"));
+  EXPECT_EQ(table.unused_columns, std::vector<std::string>{"max_force"});
 }
 
 TEST_F(FaceMuscleImports, WhatIsNoMuscleOfThisFaceIsRefused) {

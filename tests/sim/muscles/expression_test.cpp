@@ -46,6 +46,21 @@ TEST(Expression, ASideExcitesMusclesInTheMiddle) {
   EXPECT_EQ(excitation_of({&level, 1}, ring)[0], 0.6);
 }
 
+TEST(Expression, NotesKindsThatThePatientLacks) {
+  EXPECT_TRUE(make_expression("AU12", pair_of_muscles()).notes.empty());
+  const Expression lacking = make_expression("AU12+AU17", pair_of_muscles());
+  ASSERT_EQ(lacking.notes.size(), 1u);
+  EXPECT_NE(lacking.notes[0].find("AU17"), std::string::npos) << lacking.notes[0];
+  EXPECT_NE(lacking.notes[0].find("mentalis"), std::string::npos) << lacking.notes[0];
+}
+
+TEST(Expression, TellsWhetherItMovesTheUpperFace) {
+  for (const char* spec : {"surprise", "AU1:0.2:right", "smile+AU4:0.5", "sad", "disgust"})
+    EXPECT_TRUE(expression_moves_upper_face(spec)) << spec;
+  for (const char* spec : {"smile", "kiss", "AU4:0", "AU12+AU9:0.5"})
+    EXPECT_FALSE(expression_moves_upper_face(spec)) << spec;
+}
+
 TEST(FaceWeakness, IsOfASideAMuscleOrBothSides) {
   std::vector<FaceMuscle> muscles = pair_of_muscles();
   muscles.push_back({.name = "ring", .kind = "ring", .lines = {}});

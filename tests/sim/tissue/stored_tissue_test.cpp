@@ -117,6 +117,9 @@ TEST(StoredTissue, AnotherPatientOrPlanHasAnotherFile) {
   other = settings;
   other.surface_nodes = 160;
   expect_another(patient, other);
+  other = settings;
+  other.upper_face = true;
+  expect_another(patient, other);
   Case planned = patient;
   planned.tissue.attachments.push_back({.landmark = "stomion"});
   expect_another(planned, settings);

@@ -1,4 +1,4 @@
-#include "render/face/face_openings.h"
+#include "sim/case/face_openings.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
