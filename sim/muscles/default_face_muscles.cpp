@@ -56,9 +56,9 @@ const std::vector<Straight>& straight_muscles() {
       {"frontalis_lateral", "endocanthion", {16, 12, 55}, false, false, "endocanthion",
        {22, -3, 21}, 16, 16, 3, 16, 0.42, 0.5, 0.4},
       {"corrugator", "endocanthion", {-12.3, -9, 18}, false, true, "endocanthion",
-       {9.7, -7, 25}, 5, 6, 2, 6, 0.3, 0.8, 0.3},
+       {9.7, -7, 23}, 5, 8, 2, 20, 0.5, 0.8, 0.3},
       {"procerus", "endocanthion", {-15.3, -12.5, 2}, false, true, "endocanthion",
-       {-14, -19, 27}, 3, 4, 2, 4, 0.25, 0.7, 0.3},
+       {-12, -18, 27}, 3, 8, 2, 14, 0.42, 0.7, 0.3},
   };
   // clang-format on
   return all;

@@ -221,6 +221,18 @@ void keep_small(const TriMesh& mesh, const std::vector<char>& dropped, std::vect
     if (area[parts.of_triangle[i]] < largest_mm2) keep[number[i]] = 1;
 }
 
+/// A note where a mask ends so low that its border holds the brows.
+void note_low_forehead(const TriMesh& face, const Eyes& eyes, std::vector<std::string>& notes) {
+  constexpr double beside_mm = 20, enough_mm = 50;  // beside the middle; above the eyes
+  const double middle = 0.5 * (eyes.left.inner + eyes.right.inner).x();
+  double above = 0;
+  for (const Vector3d& p : face.vertices)
+    if (std::abs(p.x() - middle) < beside_mm) above = std::max(above, p.z() - eyes.height());
+  if (above < enough_mm)
+    notes.push_back("the face ends " + std::to_string(std::lround(above)) +
+                    " mm above the eyes: its border holds the forehead, so that brows rise less");
+}
+
 /// The triangles of the region, without the lining.
 std::vector<char> triangles_inside(const TriMesh& mesh, const RegionShape& shape,
                                    const std::vector<char>& lining) {
@@ -279,6 +291,7 @@ SkinRegion cut_region(const TriMesh& face, const Landmarks& landmarks, const Ana
   if (upper_face) region.eyes = find_eyes(face, landmarks);
   region.shape.upper_face = region.eyes.has_value();
   if (region.eyes) region.shape.forehead_z = region.eyes->height() + forehead_mm;
+  if (region.eyes) note_low_forehead(face, *region.eyes, notes);
   if (upper_face && !region.eyes)
     notes.push_back(
         "the face has no openings of the eyes and no landmarks left_endocanthion, "

@@ -137,7 +137,7 @@ TEST_F(FaceMuscleImports, EndsAreCompletedWhereTheFileDoesNotNameThem) {
             patient.face_muscles[1].lines[0].back().at);
 }
 
-bool has_note(const Case& patient, const std::string& words) {
+bool has_muscle_note(const Case& patient, const std::string& words) {
   return std::any_of(patient.notes.begin(), patient.notes.end(), [&](const std::string& note) {
     return note.find(words) != std::string::npos;
   });
@@ -157,9 +157,10 @@ TEST_F(FaceMuscleImports, FibresAreNotLedToTheMouthFromFarAway) {
 TEST_F(FaceMuscleImports, FibresThroughTheAirwayAreNoted) {
   const std::string ends[] = {"ris,left,1,0,50,-59,-40,tissue\n",
                               "ris,left,1,2,26,-59,-40,tissue\n"};
-  EXPECT_FALSE(has_note(import(ends[0] + "ris,left,1,1,40,-50,-40,tissue\n" + ends[1]), "airway"));
-  EXPECT_TRUE(has_note(import(ends[0] + "ris,left,1,1,35,-20,-40,tissue\n" + ends[1]),
-                       "left_risorius, fibre 1 (35 mm deep"));
+  EXPECT_FALSE(
+      has_muscle_note(import(ends[0] + "ris,left,1,1,40,-50,-40,tissue\n" + ends[1]), "airway"));
+  EXPECT_TRUE(has_muscle_note(import(ends[0] + "ris,left,1,1,35,-20,-40,tissue\n" + ends[1]),
+                              "left_risorius, fibre 1 (35 mm deep"));
 }
 
 TEST_F(FaceMuscleImports, ColumnsThatAreNotUsedAreNoted) {
