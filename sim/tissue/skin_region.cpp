@@ -223,11 +223,11 @@ void keep_small(const TriMesh& mesh, const std::vector<char>& dropped, std::vect
 
 /// A note where a mask ends so low that its border holds the brows.
 void note_low_forehead(const TriMesh& face, const Eyes& eyes, std::vector<std::string>& notes) {
-  constexpr double beside_mm = 20, enough_mm = 50;  // beside the middle; above the eyes
+  constexpr double near_middle_mm = 20, enough_mm = 50;  // above the eyes
   const double middle = 0.5 * (eyes.left.inner + eyes.right.inner).x();
   double above = 0;
   for (const Vector3d& p : face.vertices)
-    if (std::abs(p.x() - middle) < beside_mm) above = std::max(above, p.z() - eyes.height());
+    if (std::abs(p.x() - middle) < near_middle_mm) above = std::max(above, p.z() - eyes.height());
   if (above < enough_mm)
     notes.push_back("the face ends " + std::to_string(std::lround(above)) +
                     " mm above the eyes: its border holds the forehead, so that brows rise less");

