@@ -31,9 +31,11 @@ Eye opened_eye(const TriMesh& face, const std::vector<int>& rim) {
 }  // namespace
 
 double Eye::distance(const Vector3d& p) const {
-  const Vector3d along = outer - inner;
-  const double s = std::clamp((p - inner).dot(along) / along.squaredNorm(), 0.0, 1.0);
-  return (p - inner - s * along).norm();
+  const Vector3d frontal(1, 0, 1);
+  const Vector3d along = (outer - inner).cwiseProduct(frontal),
+                 from = (p - inner).cwiseProduct(frontal);
+  const double s = std::clamp(from.dot(along) / along.squaredNorm(), 0.0, 1.0);
+  return (from - s * along).norm();
 }
 
 std::optional<Eyes> find_eyes(const TriMesh& face, const Landmarks& landmarks) {

@@ -14,7 +14,7 @@ struct Eye {
   Eigen::Vector3d inner = Eigen::Vector3d::Zero(), outer = Eigen::Vector3d::Zero();  // its canthi
   Eigen::Vector3d globe = Eigen::Vector3d::Zero();  // centre of the eyeball
 
-  /// Distance of a point from the straight line between the canthi.
+  /// Distance of a point from the line between the canthi, seen from the front.
   double distance(const Eigen::Vector3d& p) const;
 };
 
