@@ -14,7 +14,7 @@ namespace {
 TriMesh region_of(const Case& patient) {
   std::vector<std::string> notes;
   return cut_region(patient.find(Role::face)->mesh, patient.landmarks, read_anatomy(patient, notes),
-                    notes)
+                    false, notes)
       .mesh;
 }
 
