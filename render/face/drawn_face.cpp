@@ -7,7 +7,7 @@
 #include "engine/math/smooth_step.h"
 #include "render/face/skin_tint.h"
 #include "render/shaders/material.h"
-#include "sim/case/face_openings.h"
+#include "sim/frame/face_openings.h"
 
 namespace condyle {
 namespace {

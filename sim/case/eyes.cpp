@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/case/face_openings.h"
+#include "sim/frame/face_openings.h"
 
 namespace condyle {
 namespace {

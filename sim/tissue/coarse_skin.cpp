@@ -23,6 +23,26 @@ double to_eyes(const SkinRegion& region, const Vector3d& p) {
   return std::min(region.eyes->left.distance(p), region.eyes->right.distance(p));
 }
 
+/// The border loop of the mouth in two runs between its corners, right and left.
+MouthOutline mouth_along(const std::vector<int>& loop, const std::vector<int>& corners,
+                         bool one_is_upper) {
+  MouthOutline mouth;
+  mouth.right_corner = corners[0];
+  mouth.left_corner = corners[1];
+  const int n = static_cast<int>(loop.size());
+  const int right =
+      static_cast<int>(std::find(loop.begin(), loop.end(), corners[0]) - loop.begin());
+  std::vector<int> one, other;
+  int i = (right + 1) % n;
+  for (; loop[i] != corners[1] && i != right; i = (i + 1) % n) one.push_back(loop[i]);
+  for (i = (i + 1) % n; i != right && i != (right + n) % n; i = (i + 1) % n)
+    other.push_back(loop[i]);
+  std::reverse(other.begin(), other.end());
+  mouth.upper = one_is_upper ? one : other;
+  mouth.lower = one_is_upper ? other : one;
+  return mouth;
+}
+
 }  // namespace
 
 CoarseSkin make_coarse_skin(const SkinRegion& region, int lower_nodes) {
@@ -106,21 +126,7 @@ CoarseSkin make_coarse_skin(const SkinRegion& region, int lower_nodes) {
     }
   }
   if (mouth_loop >= 0) {
-    skin.mouth.right_corner = coarse.pinned[0];
-    skin.mouth.left_corner = coarse.pinned[1];
-    const auto& loop = loops[mouth_loop];
-    const int n = static_cast<int>(loop.size());
-    const int right =
-        static_cast<int>(std::find(loop.begin(), loop.end(), coarse.pinned[0]) - loop.begin());
-    std::vector<int> one, other;
-    int i = (right + 1) % n;
-    for (; loop[i] != coarse.pinned[1] && i != right; i = (i + 1) % n) one.push_back(loop[i]);
-    for (i = (i + 1) % n; i != right && i != (right + n) % n; i = (i + 1) % n)
-      other.push_back(loop[i]);
-    std::reverse(other.begin(), other.end());
-    const bool one_is_upper = faces_outward(skin.mesh);
-    skin.mouth.upper = one_is_upper ? one : other;
-    skin.mouth.lower = one_is_upper ? other : one;
+    skin.mouth = mouth_along(loops[mouth_loop], coarse.pinned, faces_outward(skin.mesh));
   }
   return skin;
 }

@@ -233,6 +233,23 @@ void note_low_forehead(const TriMesh& face, const Eyes& eyes, std::vector<std::s
                     " mm above the eyes: its border holds the forehead, so that brows rise less");
 }
 
+/// Extends the region to the forehead where the eyes are known.
+void reach_forehead(const TriMesh& face, const Landmarks& landmarks, SkinRegion& region,
+                    std::vector<std::string>& notes) {
+  constexpr double forehead_mm = 60;  // above the eyes
+  region.eyes = find_eyes(face, landmarks);
+  region.shape.upper_face = region.eyes.has_value();
+  if (region.eyes) {
+    region.shape.forehead_z = region.eyes->height() + forehead_mm;
+    note_low_forehead(face, *region.eyes, notes);
+  } else {
+    notes.push_back(
+        "the face has no openings of the eyes and no landmarks left_endocanthion, "
+        "left_exocanthion, right_endocanthion and right_exocanthion: brows and forehead do not "
+        "move");
+  }
+}
+
 /// The triangles of the region, without the lining.
 std::vector<char> triangles_inside(const TriMesh& mesh, const RegionShape& shape,
                                    const std::vector<char>& lining) {
@@ -265,7 +282,6 @@ double RegionShape::inside(const Vector3d& p) const {
 
 SkinRegion cut_region(const TriMesh& face, const Landmarks& landmarks, const Anatomy& anatomy,
                       bool upper_face, std::vector<std::string>& notes) {
-  constexpr double forehead_mm = 60;  // above the eyes
   SkinRegion region;
   TriMesh mesh{face.vertices, face.triangles, {}};
   std::vector<int> source(mesh.vertices.size());
@@ -288,15 +304,7 @@ SkinRegion cut_region(const TriMesh& face, const Landmarks& landmarks, const Ana
     for (int v : loop) on_own_border[v] = 1;
 
   region.shape.anatomy = anatomy;
-  if (upper_face) region.eyes = find_eyes(face, landmarks);
-  region.shape.upper_face = region.eyes.has_value();
-  if (region.eyes) region.shape.forehead_z = region.eyes->height() + forehead_mm;
-  if (region.eyes) note_low_forehead(face, *region.eyes, notes);
-  if (upper_face && !region.eyes)
-    notes.push_back(
-        "the face has no openings of the eyes and no landmarks left_endocanthion, "
-        "left_exocanthion, right_endocanthion and right_exocanthion: brows and forehead do not "
-        "move");
+  if (upper_face) reach_forehead(face, landmarks, region, notes);
   // A closed bust has a flat underside, which is no skin; far below the jaw nothing moves. A mask
   // ends above that: its own rim may move.
   const Box box = bounding_box(mesh);

@@ -8,7 +8,7 @@
 #include "engine/mesh/triangle_tree.h"
 #include "engine/mesh_io/mesh_files.h"
 #include "render/image/colour_map.h"
-#include "sim/case/face_openings.h"
+#include "sim/frame/face_openings.h"
 #include "tests/render/scene_fixture.h"
 #include "tests/support/places.h"
 

@@ -1,4 +1,4 @@
-#include "sim/case/face_openings.h"
+#include "sim/frame/face_openings.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
