@@ -70,6 +70,9 @@ void add_quality(CLI::App& command, PictureOptions& picture) {
            1, 4);
   command.add_flag_callback(
       "--no-shadows", [&picture] { picture.shadows = false; }, "Draw no shadows");
+  command.add_flag_callback(
+      "--no-folds", [&picture] { picture.folds = false; },
+      "Draw the face without the folds of compressed skin, which are in pictures alone");
 }
 
 }  // namespace

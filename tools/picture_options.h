@@ -27,6 +27,7 @@ struct PictureOptions {
   std::string edges = "msaa4";
   int supersample = 1;
   bool shadows = true;
+  bool folds = true;
 };
 
 /// The groups "Camera" and "Look".

@@ -164,6 +164,7 @@ PicturePlan parse(const PictureOptions& options, const Case* patient) {
   settings.smooth_edges = options.edges == "fxaa";
   settings.supersampling = options.supersample;
   settings.shadows = options.shadows;
+  settings.folds = options.folds;
   plan.wipe = options.wipe;
   plan.near_mm = options.distance_near_mm;
   plan.caption = options.caption;
@@ -208,6 +209,7 @@ std::string describe(const PictureOptions& o) {
   if (!o.caption.empty()) text += "; caption " + o.caption;
   if (o.light) text += "; light";
   if (o.transparent) text += "; transparent";
+  if (!o.folds) text += "; no folds";
   return text;
 }
 

@@ -8,6 +8,7 @@
 #include "engine/core/user_cache.h"
 #include "engine/mesh/triangle_tree.h"
 #include "render/face/shade_layers.h"
+#include "render/face/skin_folds.h"
 #include "render/mesh/ambient_occlusion.h"
 #include "render/mesh/cut_cover.h"
 #include "render/mesh/vertex_normals.h"
@@ -78,9 +79,10 @@ std::vector<Drawable> make_drawables(std::span<const Part* const> parts, const M
     const Part& part = *parts[p];
     auto& [positions, normals] = prepared[p];
     std::vector<Eigen::Vector3i> own;
-    std::vector<int> uneven;
+    std::vector<int> uneven, mouth_rim;
     if (part.role == Role::face && mouth) {
       own = mouth->face;
+      mouth_rim = mouth->rim;
       if (mouth->cut) uneven = mouth->rim;
       mouth = nullptr;
     }
@@ -125,6 +127,9 @@ std::vector<Drawable> make_drawables(std::span<const Part* const> parts, const M
                          std::move(coarse_edges)});
     drawables.back().own = std::move(own);
     drawables.back().uneven = std::move(uneven);
+    if (!mouth_rim.empty())
+      drawables.back().folds = std::make_shared<const SkinFolds>(
+          positions, normals, drawables.back().triangles(), mouth_rim);
   }
   return drawables;
 }
@@ -148,6 +153,7 @@ std::vector<Drawable> drawables_like(std::span<const Drawable> others) {
                          other.coarse_edges});
     drawables.back().own = other.own;
     drawables.back().uneven = other.uneven;
+    drawables.back().folds = other.folds;
   }
   return drawables;
 }
@@ -239,18 +245,26 @@ const GpuMesh& Drawable::rest_mesh() {
   return *at_rest;
 }
 
-void Drawable::move_face(std::vector<Eigen::Vector3f> positions,
+void Drawable::move_face(std::vector<Eigen::Vector3f> positions, bool folded,
                          std::vector<Eigen::Vector3f>& normals_scratch) {
   even_rim(positions, uneven);
+  const auto shades = folds && folded ? folds->apply(positions) : std::vector<SkinFolds::Shade>{};
   vertex_normals(positions, triangles(), normals_scratch);
   mesh.send_shape(positions, normals_scratch);
-  if (creases.empty()) return;
   auto now = colors;
   for (const auto& crease : creases) {
     auto& sky = now[static_cast<std::size_t>(crease.vertex)][3];
     sky = to_byte(opened_sky(crease, static_cast<float>(sky) / 255, positions));
   }
-  mesh.send_colors(now);
+  const auto darken = [](std::uint8_t& sky, float factor) {
+    sky = to_byte(factor * static_cast<float>(sky) / 255);
+  };
+  for (const auto& [vertex, sky] : shades) darken(now[static_cast<std::size_t>(vertex)][3], sky);
+  if (!creases.empty() || folds) mesh.send_colors(now);
+  if (!folds) return;
+  auto alone = extras;
+  for (const auto& [vertex, sky] : shades) darken(alone[static_cast<std::size_t>(vertex)][0], sky);
+  mesh.send_extras(alone);
 }
 
 }  // namespace condyle

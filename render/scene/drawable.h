@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -13,6 +14,8 @@
 #include "sim/frame/part.h"
 
 namespace condyle {
+
+class SkinFolds;
 
 /// A part ready to be drawn.
 struct Drawable {
@@ -35,7 +38,8 @@ struct Drawable {
   std::span<const Eigen::Vector3i> triangles() const {
     return own.empty() ? part->mesh.triangles : own;
   }
-  std::optional<GpuMesh> at_rest = {};  // of a deforming part, for its ghost
+  std::optional<GpuMesh> at_rest = {};          // of a deforming part, for its ghost
+  std::shared_ptr<const SkinFolds> folds = {};  // of a face only
 
   const GpuMesh& shown() const { return mapped && finer ? *finer : mesh; }
   /// The same surface in smaller triangles, for maps.
@@ -49,8 +53,9 @@ struct Drawable {
   /// The part at rest.
   const GpuMesh& rest_mesh();
 
-  /// Sends a deformed face, its normals and the shade of its folds.
-  void move_face(std::vector<Eigen::Vector3f> positions,
+  /// Sends a deformed face, its normals and the shade of its creases; `folded`: with the folds of
+  /// its skin.
+  void move_face(std::vector<Eigen::Vector3f> positions, bool folded,
                  std::vector<Eigen::Vector3f>& normals_scratch);
 };
 

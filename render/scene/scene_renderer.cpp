@@ -75,7 +75,9 @@ struct SceneRenderer::State {
   Pose X_CM;                    // of the lower jaw
   Eigen::AlignedBox3f reached;  // `box` and the present boxes of other bodies
   bool face_moved = false;
-  std::vector<Eigen::Vector3f> normals;  // reused between frames
+  std::vector<Eigen::Vector3f> face_places;  // of the first face, without folds
+  std::optional<bool> sent_folds;            // with which they were sent; none: not yet
+  std::vector<Eigen::Vector3f> normals;      // reused between frames
   std::vector<Eigen::Vector3f> contact_points;
   PictureTarget target;
   float map_low = 0, map_high = 1;  // values are clamped to this range
@@ -95,6 +97,9 @@ struct SceneRenderer::State {
 
   std::span<Drawable> present() { return std::span(drawables).first(parts.size()); }
   void place(const BodyPoses& at);
+  Drawable* first_face();
+  void place_face(std::vector<Eigen::Vector3f> places);
+  void send_face(const PictureSettings& settings);
   /// The part whose opacity a drawable has; null where it is not there.
   const std::string* shown_as(std::size_t drawable, bool before) const;
 
@@ -204,6 +209,24 @@ void SceneRenderer::State::place(const BodyPoses& at) {
     if (part.body == cranium_body || part.body == lower_jaw || drawables[i].box.isEmpty()) continue;
     reached.extend(DrawItem{&drawables[i], 1, matrix_of(poses[i])}.box());
   }
+}
+
+Drawable* SceneRenderer::State::first_face() {
+  const auto face = std::find_if(drawables.begin(), drawables.end(), [](const Drawable& drawable) {
+    return drawable.part->role == Role::face;
+  });
+  return face == drawables.end() ? nullptr : &*face;
+}
+
+void SceneRenderer::State::place_face(std::vector<Eigen::Vector3f> places) {
+  face_places = std::move(places);
+  sent_folds.reset();
+}
+
+void SceneRenderer::State::send_face(const PictureSettings& settings) {
+  if (face_places.empty() || sent_folds == settings.folds) return;
+  first_face()->move_face(face_places, settings.folds, normals);
+  sent_folds = settings.folds;
 }
 
 /// Distance of the jaw from the pose of its baked shade: 1 there, 0 far off, and where either jaw
@@ -325,22 +348,18 @@ std::pair<Eigen::Vector3d, Eigen::Vector3d> SceneRenderer::bounds() const {
 void SceneRenderer::update(const FrameState& frame) {
   auto& s = *state_;
   s.place(frame.poses);
-  for (auto& drawable : s.drawables) {
-    if (drawable.part->role != Role::face) continue;
-    const auto& rest = drawable.part->mesh.vertices;
-    const DrawnFace* other = s.patient->face_of(*drawable.part);
+  if (const Drawable* face = s.first_face()) {
+    const auto& rest = face->part->mesh.vertices;
+    const DrawnFace* other = s.patient->face_of(*face->part);
     const bool moved = frame.face.size() == (other ? other->given() : rest.size());
-    if (moved && other) {
-      drawable.move_face(other->places(frame.face), s.normals);
-    } else if (moved) {
-      drawable.move_face(frame.face, s.normals);
+    if (moved) {
+      s.place_face(other ? other->places(frame.face) : frame.face);
     } else if (s.face_moved) {
       std::vector<Eigen::Vector3f> positions;
       for (const auto& v : rest) positions.push_back(v.cast<float>());
-      drawable.move_face(std::move(positions), s.normals);
+      s.place_face(std::move(positions));
     }
     s.face_moved = moved;
-    break;
   }
   s.contact_points.clear();
   for (const auto& pair : frame.contacts.pairs)
@@ -391,6 +410,7 @@ void SceneRenderer::set_sheet(const std::string& name, const GlassSheet& sheet) 
 
 DrawnBox SceneRenderer::drawn_box(const Camera& camera, const PictureSettings& settings) const {
   auto& s = *state_;
+  s.send_face(settings);
   const auto items = s.items(settings);
   const auto view = s.view(camera, settings, items);
   PictureBounds bounds(settings.width, settings.height, view.view_projection);
@@ -408,6 +428,7 @@ DrawnBox SceneRenderer::drawn_box(const Camera& camera, const PictureSettings& s
 void SceneRenderer::draw(const Camera& camera, const PictureSettings& settings,
                          const std::optional<DrawnBox>& within) {
   auto& s = *state_;
+  s.send_face(settings);
   GLint target = 0;
   glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &target);
   const auto items = s.items(settings);

@@ -27,6 +27,7 @@ struct PictureSettings {
   bool shadows = true;
   bool coarse = false;            // shapes within 0.2 mm, for fast pictures
   bool contacts = true;           // mark contact points
+  bool folds = true;              // of compressed skin: see skin_folds.h
   bool before_operation = false;  // with the parts that an operation removed, without its grafts
   Backdrop backdrop = Backdrop::dark;
   bool transparent = false;                    // no backdrop
@@ -64,7 +65,8 @@ class SceneRenderer {
   /// Bounding box of everything that can be drawn, at rest, mm.
   std::pair<Eigen::Vector3d, Eigen::Vector3d> bounds() const;
 
-  /// Sets poses, face and contacts of a frame (normals of the face are computed here).
+  /// Sets poses, face and contacts of a frame (normals and folds of the face are computed
+  /// when it is drawn).
   void update(const FrameState& frame);
 
   /// The map of all parts that are coloured by values.

@@ -65,12 +65,12 @@ std::uint64_t shown_hash(const ViewRecording& subject, const PicturePlan& plan) 
   };
   Json shown;
   // Complete: a new field does not compile until it is added here.
-  const auto& [width, height, samples, shadows, coarse, contacts, before_operation, backdrop,
+  const auto& [width, height, samples, shadows, coarse, contacts, folds, before_operation, backdrop,
                transparent, skin_opacity, part_opacity, clip, cut_away, ghost, wireframe,
                mapped_up_to, from_x, to_x, smooth_edges, supersampling] = plan.settings;
   shown["picture"] = {
-      {samples, shadows, coarse, contacts, before_operation, backdrop, transparent, skin_opacity,
-       from_x, to_x},
+      {samples, shadows, coarse, contacts, folds, before_operation, backdrop, transparent,
+       skin_opacity, from_x, to_x},
       {smooth_edges, supersampling, part_opacity, wireframe, mapped_up_to.value_or(-1)}};
   if (clip) shown["clip"] = {list(clip->point), list(clip->normal), clip->capped, clip->parts};
   if (cut_away) shown["cut"] = {list(cut_away->center), cut_away->radius_mm, cut_away->parts};

@@ -29,7 +29,7 @@ bool same(const Camera& a, const Camera& b) {
 }
 bool same(const PictureSettings& a, const PictureSettings& b) {
   return a.width == b.width && a.height == b.height && a.shadows == b.shadows &&
-         a.contacts == b.contacts && a.backdrop == b.backdrop && a.skin_opacity == b.skin_opacity &&
+         a.folds == b.folds && a.contacts == b.contacts && a.backdrop == b.backdrop && a.skin_opacity == b.skin_opacity &&
          a.part_opacity == b.part_opacity;
 }
 
@@ -61,6 +61,7 @@ PictureSettings Window::State::settings() const {
   picture_settings.width = std::max(1, static_cast<int>(std::lround(rect.width * density)));
   picture_settings.height = std::max(1, static_cast<int>(std::lround(rect.height * density)));
   picture_settings.shadows = view.shadows;
+  picture_settings.folds = view.look.folds;
   picture_settings.contacts = view.mark_contacts;
   picture_settings.backdrop = arrangement.light ? Backdrop::light : Backdrop::dark;
   picture_settings.skin_opacity = view.skin_opacity;

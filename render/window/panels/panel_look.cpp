@@ -130,6 +130,8 @@ void Panels::Drawing::look_overlays() {
   tick_box(pen, "letters", "Orientation letters", look.letters);
   tooltip(pen, "L left, R right, A front, P back, S up, I down: the patient's");
   tick_box(pen, "shadows", "Shadows", view.shadows);
+  tick_box(pen, "folds", "Folds of the skin", look.folds);
+  tooltip(pen, "Where the skin is compressed; in the picture alone, not in measures or exports");
 }
 
 void Panels::Drawing::look_distances() {

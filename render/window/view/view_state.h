@@ -104,6 +104,7 @@ struct Look {
   bool springs = false, prisms = false, bone_springs = false;  // of the soft tissue
   bool displacement = false;  // the skin coloured by its displacement from rest
   bool scale_bar = true, letters = true;
+  bool folds = true;          // of compressed skin, in pictures alone
   bool wipe = false;          // the kept state at the left, the present one at the right
   double wipe_at = 0.5;       // fraction of the width
   std::string mirrored = {};  // part whose mirror image is shown; empty: none

@@ -1,0 +1,221 @@
+#include "render/face/fold_lines.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace condyle {
+namespace {
+
+using Eigen::Vector2f;
+using Eigen::Vector3f;
+
+constexpr float adult_mouth_mm = 50;  // width for which lengths are given
+constexpr float spacing_mm = 2.5;     // of samples
+
+/// The face around the mouth in front view: x to the left, z up.
+class FrontView {
+ public:
+  FrontView(std::span<const Vector3f> rest, std::span<const Vector3f> normals,
+            std::span<const int> rim)
+      : rest_(rest), normals_(normals) {
+    Eigen::AlignedBox3f mouth;
+    right_ = left_ = rest[static_cast<std::size_t>(rim.front())];
+    for (const int v : rim) {
+      const Vector3f& p = rest[static_cast<std::size_t>(v)];
+      mouth.extend(p);
+      if (p.x() < right_.x()) right_ = p;
+      if (p.x() > left_.x()) left_ = p;
+    }
+    middle_ = mouth.center();
+    width_ = left_.x() - right_.x();
+    for (std::size_t v = 0; v < rest.size(); ++v) {
+      const Vector3f off = rest[v] - middle_;
+      if (std::abs(off.x()) < 1.2f * width_ && std::abs(off.z()) < 1.5f * width_ &&
+          off.y() < 1.2f * width_)
+        near_.push_back(v);
+    }
+  }
+
+  float width() const { return width_; }
+  const Vector3f& corner(int side) const { return side > 0 ? left_ : right_; }
+  const Vector3f& middle() const { return middle_; }
+
+  /// The tip of the nose; none if nothing protrudes above the mouth.
+  std::optional<Vector3f> nose_tip() const {
+    std::optional<Vector3f> tip;
+    for (const std::size_t v : near_) {
+      const Vector3f off = rest_[v] - middle_;
+      if (std::abs(off.x()) < 0.2f * width_ && off.z() > 0.2f * width_ && off.z() < width_ &&
+          (!tip || rest_[v].y() < tip->y()))
+        tip = rest_[v];
+    }
+    if (!tip || tip->y() > middle_.y()) return std::nullopt;
+    return tip;
+  }
+
+  /// Where the ala meets the cheek: farthest behind the line from the tip of the nose to the cheek,
+  /// at the height of the alae.
+  std::optional<Vector3f> alar_crease(int side, const Vector3f& tip) const {
+    const auto s = static_cast<float>(side);
+    const float height = tip.z() - 0.06f * width_, band = 0.05f * width_;
+    const auto cheek = skin_at({middle_.x() + s * 0.75f * width_, height});
+    if (!cheek) return std::nullopt;
+    const Vector2f from(tip.x(), tip.y()),
+        along = (Vector2f(cheek->x(), cheek->y()) - from).normalized();
+    std::optional<Vector3f> crease;
+    float deepest = 0;
+    for (const std::size_t v : near_) {
+      const Vector3f& p = rest_[v];
+      const float out = s * (p.x() - middle_.x());
+      if (std::abs(p.z() - height) > band || out < 0.2f * width_ || out > 0.6f * width_ ||
+          normals_[v].dot(Vector3f(0.7f * s, -0.7f, 0)) < 0.3f)
+        continue;
+      const Vector2f off = Vector2f(p.x(), p.y()) - from;
+      const float behind = s * (along.x() * off.y() - along.y() * off.x());
+      if (behind > deepest) deepest = behind, crease = p;
+    }
+    return crease;
+  }
+
+  /// Mean of the foremost skin around a position (x, z); none where there is no skin.
+  std::optional<Vector3f> skin_at(const Vector2f& at) const {
+    const float radius = 0.06f * width_, deep = 0.15f * width_;
+    float front = std::numeric_limits<float>::infinity();
+    const auto inside = [&](std::size_t v) {
+      return (Vector2f(rest_[v].x(), rest_[v].z()) - at).squaredNorm() < radius * radius;
+    };
+    for (const std::size_t v : near_)
+      if (inside(v)) front = std::min(front, rest_[v].y());
+    Vector3f sum = Vector3f::Zero();
+    float weights = 0;
+    for (const std::size_t v : near_) {
+      if (!inside(v) || rest_[v].y() > front + deep) continue;
+      const float weight = 1 - (Vector2f(rest_[v].x(), rest_[v].z()) - at).norm() / radius + 1e-3f;
+      sum += weight * rest_[v];
+      weights += weight;
+    }
+    if (weights <= 0) return std::nullopt;
+    return Vector3f(at.x(), sum.y() / weights, at.y());
+  }
+
+  /// Mean normal around a position on the skin.
+  Vector3f normal_at(const Vector3f& p) const {
+    const float radius = 0.12f * width_;
+    Vector3f sum = Vector3f::Zero();
+    for (const std::size_t v : near_)
+      if ((rest_[v] - p).squaredNorm() < radius * radius && normals_[v].y() < 0.3f)
+        sum += normals_[v];
+    return sum.norm() > 0 ? Vector3f(sum.normalized()) : Vector3f(-Vector3f::UnitY());
+  }
+
+  /// Where the midline is farthest behind the line from the lower lip to the chin.
+  std::optional<Vector3f> mentolabial_point() const {
+    std::vector<Vector3f> profile;
+    for (float down = 0.06f; down < 1.0f; down += 0.02f)
+      if (const auto p = skin_at({middle_.x(), middle_.z() - down * width_})) profile.push_back(*p);
+    if (profile.size() < 10) return std::nullopt;
+    const auto foremost = [](auto from, auto to) {
+      return std::min_element(from, to,
+                              [](const Vector3f& a, const Vector3f& b) { return a.y() < b.y(); });
+    };
+    const auto half = profile.begin() + static_cast<std::ptrdiff_t>(profile.size()) / 3;
+    const auto lip = foremost(profile.begin(), half), chin = foremost(half, profile.end());
+    const Vector3f along = (*chin - *lip).normalized();
+    std::optional<Vector3f> point;
+    float deepest = 0.02f * width_;
+    for (auto p = lip; p != chin; ++p) {
+      const Vector3f off = *p - *lip, away = off - off.dot(along) * along;
+      if (away.y() > deepest) deepest = away.y(), point = *p;
+    }
+    return point;
+  }
+
+ private:
+  std::span<const Vector3f> rest_, normals_;
+  std::vector<std::size_t> near_;
+  Vector3f right_, left_, middle_;
+  float width_ = 0;
+};
+
+/// A smooth curve through positions in front view, laid on the skin. side: of the bulge, as the
+/// sign of its direction across the curve.
+std::vector<FoldLine::Sample> laid(const FrontView& face, std::span<const Vector2f> knots,
+                                   float side) {
+  std::vector<Vector2f> curve;
+  for (std::size_t k = 0; k + 1 < knots.size(); ++k) {
+    const Vector2f &a = knots[k], &b = knots[k + 1];
+    const Vector2f before = k > 0 ? knots[k - 1] : Vector2f(2 * a - b);
+    const Vector2f after = k + 2 < knots.size() ? knots[k + 2] : Vector2f(2 * b - a);
+    const int steps = std::max(1, static_cast<int>(std::ceil((b - a).norm() / spacing_mm)));
+    for (int i = k == 0 ? 0 : 1; i <= steps; ++i) {
+      const float t = static_cast<float>(i) / static_cast<float>(steps);
+      curve.push_back(0.5f *
+                      (2 * a + t * (b - before) + t * t * (2 * before - 5 * a + 4 * b - after) +
+                       t * t * t * (3 * a - before - 3 * b + after)));
+    }
+  }
+  std::vector<FoldLine::Sample> samples;
+  for (const Vector2f& at : curve)
+    if (const auto p = face.skin_at(at))
+      samples.push_back({*p, face.normal_at(*p), Vector3f::Zero(), 1});
+  const std::size_t n = samples.size();
+  if (n < 4) return {};
+  for (std::size_t i = 0; i < n; ++i) {
+    const Vector3f along = samples[std::min(i + 1, n - 1)].point - samples[i > 0 ? i - 1 : 0].point;
+    samples[i].across = (side * samples[i].normal.cross(along)).normalized();
+    const float t = static_cast<float>(i) / static_cast<float>(n - 1), ends = 4 * t * (1 - t);
+    samples[i].fraction = std::sqrt(std::max(ends, 0.f)) * std::min(1.f, 2 * ends);
+  }
+  return samples;
+}
+
+}  // namespace
+
+std::vector<FoldLine> find_fold_lines(std::span<const Vector3f> rest,
+                                      std::span<const Vector3f> normals, std::span<const int> rim) {
+  std::vector<FoldLine> lines;
+  if (rim.empty()) return lines;
+  const FrontView face(rest, normals, rim);
+  const float unit = face.width() / adult_mouth_mm;
+  const auto add = [&](std::span<const Vector2f> knots, float side, const FoldLine& like) {
+    FoldLine line = like;
+    line.samples = laid(face, knots, side);
+    for (float* length : {&line.gauge_mm, &line.far_mm, &line.limit_mm, &line.groove_mm})
+      *length *= unit;
+    if (!line.samples.empty()) lines.push_back(std::move(line));
+  };
+  const auto tip = face.nose_tip();
+  for (const int side : {1, -1}) {
+    const auto s = static_cast<float>(side);
+    const Vector2f corner(face.corner(side).x(), face.corner(side).z());
+    const auto beside = [&](float out, float up) {
+      return Vector2f(corner + unit * Vector2f(s * out, up));
+    };
+    if (const auto ala = tip ? face.alar_crease(side, *tip) : std::nullopt) {
+      const Vector2f start(ala->x() + s * unit, ala->z() + 3 * unit);
+      const Vector2f between = 0.5f * (start + beside(10, 3)) + unit * Vector2f(s * 2, 1);
+      add(std::array{start, between, beside(10, 3), beside(9, -10)}, s,
+          {.gauge_mm = 8,
+           .far_mm = 24,
+           .gain = 0.9f,
+           .limit_mm = 2.5f,
+           .groove_mm = 2.2f,
+           .bulge = 0.9f});
+    }
+    add(std::array{beside(3.5f, 5), beside(4.5f, 0), beside(4, -6)}, s,
+        {.gauge_mm = 3.5f, .gain = 0.7f, .limit_mm = 0.8f, .groove_mm = 1.2f, .bulge = 0.4f});
+  }
+  if (const auto sulcus = face.mentolabial_point()) {
+    const Vector2f at(sulcus->x(), sulcus->z());
+    add(std::array{Vector2f(at - unit * Vector2f(15, 4)), at,
+                   Vector2f(at + unit * Vector2f(15, -4))},
+        1, {.gauge_mm = 7, .gain = 0.7f, .limit_mm = 1.8f, .groove_mm = 2.5f, .bulge = 0.4f});
+  }
+  return lines;
+}
+
+}  // namespace condyle

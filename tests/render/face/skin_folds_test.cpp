@@ -1,0 +1,134 @@
+// Skin folds where it is compressed, in pictures alone; at rest and where it is stretched the drawn
+// face is that without folds, bit for bit.
+#include "render/face/skin_folds.h"
+
+#include <algorithm>
+
+#include "render/face/mouth_lining.h"
+#include "render/mesh/vertex_normals.h"
+#include "tests/render/scene_fixture.h"
+
+namespace condyle {
+namespace {
+
+using Eigen::Vector3f;
+
+/// A round head with a nose and with a slit of 50 mm for a mouth, and a ball for each jaw's teeth.
+std::vector<Part> head_with_nose() {
+  TriMesh face = ball({0, 0, 0}, 60, 120);
+  for (auto& p : face.vertices) {
+    const double across = p.x() / 9, up = (p.z() - 26) / 9;
+    if (p.y() < 0) p.y() -= 18 * std::exp(-across * across - up * up);
+  }
+  std::erase_if(face.triangles, [&](const Eigen::Vector3i& t) {
+    const Eigen::Vector3d p = (face.vertices[t[0]] + face.vertices[t[1]] + face.vertices[t[2]]) / 3;
+    return p.y() < 0 && std::hypot(p.x() / 25, p.z() / 3) < 1;
+  });
+  return {make_part("face", Role::face, face),
+          make_part("upper_teeth", Role::upper_teeth, ball({0, -38, 6}, 16, 16)),
+          make_part("lower_teeth", Role::lower_teeth, ball({0, -38, -6}, 16, 16))};
+}
+
+/// The face of that head and its folds.
+struct FoldedHead {
+  std::vector<Part> parts = head_with_nose();
+  std::vector<Vector3f> rest = {}, normals = {};
+  std::optional<SkinFolds> folds = {};
+
+  FoldedHead() {
+    const TriMesh& face = parts[0].mesh;
+    for (const auto& p : face.vertices) rest.push_back(p.cast<float>());
+    vertex_normals(rest, face.triangles, normals);
+    const auto lining = line_mouth(parts);
+    if (lining) folds.emplace(rest, normals, face.triangles, lining->rim);
+  }
+
+  /// The left corner of the mouth drawn up and outward by so much, mm, and the skin around it.
+  std::vector<Vector3f> smiling(float mm) const {
+    const Vector3f corner(25, -54.5f, 0);
+    std::vector<Vector3f> places = rest;
+    for (auto& p : places) {
+      const float near = std::exp(-(p - corner).squaredNorm() / (12 * 12));
+      p += mm * near * Vector3f(0.6f, 0.15f, 0.8f);
+    }
+    return places;
+  }
+};
+
+TEST(SkinFoldsTest, RestAndStretchedSkinStayBitForBit) {
+  const FoldedHead head;
+  ASSERT_TRUE(head.folds);
+  std::vector<Vector3f> places = head.rest;
+  EXPECT_TRUE(head.folds->apply(places).empty());
+  EXPECT_EQ(places, head.rest);
+  for (auto& p : places) p *= 1.1f;
+  const std::vector<Vector3f> stretched = places;
+  EXPECT_TRUE(head.folds->apply(places).empty());
+  EXPECT_EQ(places, stretched);
+}
+
+TEST(SkinFoldsTest, ASideThatSmilesFoldsBesideItsCornerAndDeeperWithTheSmile) {
+  const FoldedHead head;
+  ASSERT_TRUE(head.folds);
+  double before = 0;
+  for (const float mm : {5.f, 10.f}) {
+    const std::vector<Vector3f> smooth = head.smiling(mm);
+    std::vector<Vector3f> places = smooth;
+    EXPECT_FALSE(head.folds->apply(places).empty());
+    double deepest = 0;
+    for (std::size_t v = 0; v < places.size(); ++v) {
+      if (places[v] == smooth[v]) continue;
+      const Vector3f& p = head.rest[v];
+      EXPECT_GT(p.x(), 0) << p.transpose();
+      EXPECT_LT(p.y(), 0) << p.transpose();
+      deepest = std::max(deepest, static_cast<double>((places[v] - smooth[v]).norm()));
+      EXPECT_LT((places[v] - smooth[v]).norm(), 4);
+    }
+    EXPECT_GT(deepest, before + 0.1);
+    before = deepest;
+    std::vector<Vector3f> again = smooth;
+    head.folds->apply(again);
+    EXPECT_EQ(again, places);
+  }
+  EXPECT_GT(before, 0.8);
+}
+
+TEST(SkinFoldsTest, AFaceWithoutAMouthHasNone) {
+  const FoldedHead head;
+  const SkinFolds none(head.rest, head.normals, head.parts[0].mesh.triangles, {});
+  std::vector<Vector3f> places = head.smiling(10);
+  const std::vector<Vector3f> before = places;
+  EXPECT_TRUE(none.apply(places).empty());
+  EXPECT_EQ(places, before);
+}
+
+class SkinFoldPictures : public WithContext {};
+
+TEST_F(SkinFoldPictures, ShowThemBesideTheCornerAloneAndNoneAtRest) {
+  const FoldedHead head;
+  SceneRenderer renderer(head.parts);
+  PictureSettings folded = mask_settings(), smooth = folded;
+  smooth.folds = false;
+  FrameState frame;
+  frame.face = head.rest;
+  renderer.update(frame);
+  const Camera camera = front_camera(140);
+  const Image rest = renderer.picture(camera, folded);
+  EXPECT_TRUE(test::same_bytes(rest, renderer.picture(camera, smooth)));
+  frame.face = head.smiling(10);
+  renderer.update(frame);
+  const Image without = renderer.picture(camera, smooth), with = renderer.picture(camera, folded);
+  EXPECT_TRUE(test::unlike(with, without, 0.002));
+  EXPECT_TRUE(test::same_bytes(without, renderer.picture(camera, smooth))) << "switched back";
+  for (int y = 0; y < with.height; ++y)
+    for (int x = 0; x < with.width / 2; ++x) {
+      const Pixel a = pixel(with, x, y), b = pixel(without, x, y);
+      EXPECT_LE(std::max({std::abs(a.r - b.r), std::abs(a.g - b.g), std::abs(a.b - b.b)}), 12)
+          << "the side that does not smile, " << x << " " << y;
+    }
+  renderer.update(FrameState{});
+  EXPECT_TRUE(test::same_bytes(rest, renderer.picture(camera, folded))) << "at rest again";
+}
+
+}  // namespace
+}  // namespace condyle
