@@ -197,8 +197,8 @@ std::vector<FoldLine> find_fold_lines(std::span<const Vector3f> rest,
     };
     if (const auto ala = tip ? face.alar_crease(side, *tip) : std::nullopt) {
       const Vector2f start(ala->x() + s * unit, ala->z() + 3 * unit);
-      const Vector2f between = 0.5f * (start + beside(10, 3)) + unit * Vector2f(s * 2, 1);
-      add(std::array{start, between, beside(10, 3), beside(9, -10)}, s,
+      const Vector2f between = 0.5f * (start + beside(11, 3)) + unit * Vector2f(s * 2, 1);
+      add(std::array{start, between, beside(11, 3), beside(10, -10)}, s,
           {.gauge_mm = 8,
            .far_mm = 24,
            .gain = 0.9f,

@@ -45,6 +45,7 @@ std::vector<FacePicture> face_pictures(const Prediction& prediction) {
   settings.width = 900;
   settings.height = 1000;
   settings.contacts = false;
+  settings.folds = false;  // a prediction is of the face at rest
   const auto [low, high] = renderer.bounds();
   const ColourMap map = displacement_colours(rounded_up(prediction.max_displacement_mm()));
   renderer.set_colour_map(map);
