@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "tests/support/picture.h"
 #include "tests/support/program.h"
 
 namespace condyle::test {
@@ -63,6 +64,33 @@ TEST(Expression, WordsOfAMotionMoveTheFaceAndTheJaw) {
     if (quantity == "right_zygomaticus_major: length over that at rest") right = finding["value"];
   }
   EXPECT_LT(left, right - 0.03) << "only the left one pulls";
+}
+
+TEST(Expression, FoldsOfTheSkinAreInPicturesAlone) {
+  const Folder folder;
+  const auto record = [&](const std::string& name, const std::vector<std::string>& more) {
+    std::vector<std::string> smile = {"record",  "--expression", "smile",      "--frames",
+                                      "2",       "--camera",     "front",      "--size",
+                                      "400x400", "--out",        folder / name};
+    smile.insert(smile.end(), more.begin(), more.end());
+    const Outcome done = condyle(smile);
+    EXPECT_EQ(done.code, 0) << done.err;
+    return fs::path(folder / name);
+  };
+  const fs::path with = record("with", {}), without = record("without", {"--no-folds"});
+  const auto frame = [](const fs::path& out, const char* number) {
+    return Picture((out / "frames" / number).string());
+  };
+  EXPECT_TRUE(same_bytes(frame(with, "000000.png"), frame(without, "000000.png"))) << "at rest";
+  EXPECT_TRUE(unlike(frame(with, "000001.png"), frame(without, "000001.png"), 0.0005));
+  // Brows, eyes and skull are above, the neck below.
+  for (const Region& away : {Region{0, 0, 400, 150}, Region{0, 290, 400, 110}})
+    EXPECT_TRUE(alike(frame(with, "000001.png"), frame(without, "000001.png"), 0, away));
+  EXPECT_EQ(read_text(with / "expression.csv"), read_text(without / "expression.csv"));
+  const auto findings = [](const fs::path& out) {
+    return nlohmann::json::parse(read_text(out / "report.json"))["findings"];
+  };
+  EXPECT_EQ(findings(with), findings(without));
 }
 
 TEST(Expression, APalsiedFaceIsComparedBeforeAndAfterAPlan) {
