@@ -26,8 +26,8 @@ struct FoldLine {
 
 /// Nasolabial folds, creases beside the corners of the mouth and the mentolabial sulcus of a face
 /// at rest, mm, LPS. normals: unit, one per vertex. rim: vertices around the mouth. Lines that the
-/// surface does not show are omitted. source of the course: Barton and Meade-Tollin, Aesthetic
-/// anatomy of the nasolabial region, 1989: from the ala round the corner of the mouth
+/// surface does not show are omitted. Their
+/// course, from the ala round the corner of the mouth, and their depths were chosen by eye.
 std::vector<FoldLine> find_fold_lines(std::span<const Eigen::Vector3f> rest,
                                       std::span<const Eigen::Vector3f> normals,
                                       std::span<const int> rim);
