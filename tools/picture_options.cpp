@@ -31,8 +31,9 @@ void add_overlays(CLI::App& command, PictureOptions& picture) {
   command
       .add_option("--overlay", picture.overlay,
                   "Also draw, separated by commas: springs, prisms, bone-springs, layers (of the "
-                  "tissue), muscles (lines of action), axes, paths (of condyles and incisal "
-                  "point), ghost (the rest position), wireframe[:PARTS], patches (of contact), "
+                  "tissue), muscles (of the jaw), muscle-labels (the same with names), "
+                  "facial-muscles, axes, paths (of condyles and incisal point), ghost (the rest "
+                  "position), wireframe[:PARTS], patches (of contact), "
                   "scale, letters (L R A P S I)")
       ->type_name("LIST");
   in_range(

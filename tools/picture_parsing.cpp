@@ -111,6 +111,8 @@ void add_overlay(const std::string& item, const Case* patient, PicturePlan& plan
                                                  {"axes", &plan.overlays.axes},
                                                  {"paths", &plan.overlays.paths},
                                                  {"muscles", &plan.overlays.muscles},
+                                                 {"muscle-labels", &plan.overlays.muscle_labels},
+                                                 {"facial-muscles", &plan.overlays.facial_muscles},
                                                  {"layers", &plan.overlays.layers},
                                                  {"patches", &plan.patches},
                                                  {"scale", &plan.annotations.scale_bar},

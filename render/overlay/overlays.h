@@ -57,6 +57,24 @@ struct GlassSheet {
   bool empty() const { return triangles.empty() || !(opacity > 0); }
 };
 
+/// An opaque body of fibres in space, e.g. the belly of a muscle: lit, with stripes along it, and
+/// hidden by what lies in front of it.
+struct FibreBody {
+  std::vector<Eigen::Vector3f> positions = {};
+  std::vector<Eigen::Vector3i> triangles = {};  // closed, counter-clockwise from outside
+  std::vector<Eigen::Vector3f> colors = {};     // one for each position
+  std::vector<float> fibres = {};  // one for each position: constant along a fibre, one each unit
+  float opacity = 1;
+
+  bool empty() const { return triangles.empty() || !(opacity > 0); }
+};
+
+/// Words at a point in space.
+struct PlaceLabel {
+  std::string words = {};
+  Eigen::Vector3f place = Eigen::Vector3f::Zero();
+};
+
 /// A chain of points as lines, added to the set.
 void add_run(LineSet& lines, const std::vector<Eigen::Vector3f>& points);
 /// A line with a head of a tenth of its length.

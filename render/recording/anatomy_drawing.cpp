@@ -17,13 +17,6 @@ using Eigen::Vector3f;
 const std::array<Vector3f, 4> layer_colors = {
     {{0.88f, 0.67f, 0.56f}, {0.94f, 0.83f, 0.45f}, {0.72f, 0.24f, 0.20f}, {0.62f, 0.68f, 0.74f}}};
 
-// Colours of a muscle; distinguishable by lightness alone.
-const Vector3f idle(0.50f, 0.12f, 0.11f), excited(1.0f, 0.88f, 0.25f);
-
-Vector3f excited_color(double excitation) {
-  return idle + static_cast<float>(std::clamp(excitation, 0.0, 1.0)) * (excited - idle);
-}
-
 /// The layer below a sheet: as requested, or a division of it.
 struct LayerPiece {
   int layer = 0, layers = 1, piece = 0, pieces = 1;
@@ -48,12 +41,6 @@ Vector3f layer_color(const TissueModel& model, int sheet) {
       here.layers == 1 ? 0 : 2 * here.layer / (here.layers - 1))];
 }
 
-double excitation_of(const Muscle& muscle, const Motion& motion, const FrameState& frame) {
-  for (std::size_t k = 0; k < std::min(frame.muscles.size(), motion.muscle_names.size()); ++k)
-    if (motion.muscle_names[k] == muscle.name) return frame.muscles[k].excitation;
-  return 0;
-}
-
 std::string label_of(const TissueModel& model, int sheet,
                      const std::array<const char*, 3>& standard) {
   if (sheet + 1 == model.mesh->sheets) return "Inner side";
@@ -65,27 +52,6 @@ std::string label_of(const TissueModel& model, int sheet,
 }
 
 }  // namespace
-
-LineSet muscle_line(const Muscle& muscle, const Motion& motion, const FrameState& frame,
-                    double opacity) {
-  const auto now = [&](MuscleBody body, const Eigen::Vector3d& rest) -> Vector3f {
-    if (body == MuscleBody::mandible) return (frame.poses[mandible_body] * rest).cast<float>();
-    // A hand that moves the jaw elsewhere does not affect the hyoid, which follows the motion.
-    if (body == MuscleBody::hyoid && motion.hyoid)
-      return (motion.hyoid(frame.time_s) * rest).cast<float>();
-    return rest.cast<float>();
-  };
-  const Vector3f origin = now(muscle.origin_body, muscle.origin),
-                 insertion = now(muscle.insertion_body, muscle.insertion);
-  return {.ends = {origin, insertion},
-          .colors = {},
-          .dots = {origin, insertion},
-          .color = excited_color(excitation_of(muscle, motion, frame)),
-          .width_px = 6,
-          .dot_mm = 1.2f,
-          .through = 0.45f,
-          .opacity = static_cast<float>(opacity)};
-}
 
 GlassSheet layer_sheet(const TissueModel& model, const TissueState& now, int sheet,
                        double opacity) {
@@ -99,10 +65,6 @@ GlassSheet layer_sheet(const TissueModel& model, const TissueState& now, int she
         now.nodes[static_cast<std::size_t>(node_of(column, sheet, model.mesh->sheets))]
             .cast<float>());
   return made;
-}
-
-KeyEntry muscle_key() {
-  return {"Muscles, at rest to excited", {idle, excited}, KeyEntry::Mark::scale};
 }
 
 std::string layer_label(const TissueModel& model, int sheet) {

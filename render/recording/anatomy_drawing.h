@@ -4,23 +4,14 @@
 
 #include "render/overlay/overlay_key.h"
 #include "render/overlay/overlays.h"
-#include "sim/case/muscle.h"
-#include "sim/frame/frame_state.h"
-#include "sim/motion/motion.h"
 #include "sim/tissue/tissue.h"
 
 namespace condyle {
 
-/// The line of action of a muscle at the present poses: dark red at rest, bright yellow when fully
-/// excited. The hyoid follows the motion.
-LineSet muscle_line(const Muscle& muscle, const Motion& motion, const FrameState& frame,
-                    double opacity = 1);
-
 /// The sheet below a number of layers of soft tissue, at the present nodes.
 GlassSheet layer_sheet(const TissueModel& model, const TissueState& now, int sheet,
                        double opacity = 0.5);
-/// Entries for their colours.
-KeyEntry muscle_key();
+/// Entry for its colour.
 KeyEntry layer_key(const TissueModel& model, int sheet);
 /// "Fat" in the default three layers; "Fat, 2 of 2" where a fine mesh has divided it.
 std::string layer_label(const TissueModel& model, int sheet);

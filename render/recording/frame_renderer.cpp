@@ -9,8 +9,11 @@
 #include "engine/mesh/measure.h"
 #include "render/image/gap_colours.h"
 #include "render/image/raster_2d.h"
+#include "render/overlay/place_labels.h"
 #include "render/recording/anatomy_drawing.h"
 #include "render/recording/caption.h"
+#include "render/recording/facial_bellies.h"
+#include "render/recording/muscle_looks.h"
 #include "sim/muscles/default_muscles.h"
 #include "sim/tissue/model.h"
 
@@ -107,7 +110,8 @@ FrameRenderer::FrameRenderer(const PicturePlan& plan, const RecordingFiles& file
     : subject_(subject), plan_(plan), rest_(rest_frame(subject.scene)) {
   const auto& patient = subject.scene.patient;
   const bool distance = plan_.map == SurfaceMap::distance;
-  if (plan_.overlays.muscles) muscles_ = muscles_of(patient);
+  if (plan_.overlays.muscles || plan_.overlays.muscle_labels)
+    muscles_.emplace(muscles_of(patient), patient);
   if (subject.settings.face) carry_face(subject.scene, rest_, subject.settings.threads);
   if (plan_.before) rest_ = *plan_.before;
 
@@ -200,11 +204,14 @@ Overlays FrameRenderer::chosen_overlays(const FrameState& state, bool with_paths
   Overlays all;
   all.lines = overlay_lines(subject_.scene, state, plan_.overlays);
   if (plan_.overlays.paths && with_paths) all.lines["paths"] = paths_.lines();
-  for (const Muscle& muscle : muscles_)
-    all.lines["muscle " + muscle.name] = muscle_line(muscle, subject_.motion, state);
   const TissueModel* tissue = state.tissue.nodes.empty() ? nullptr : subject_.scene.tissue.get();
   all.key = overlay_key(plan_.overlays, tissue != nullptr);
-  if (!muscles_.empty()) all.key.push_back(muscle_key());
+  if (muscles_)
+    add_muscles(*muscles_, subject_.motion, state, {}, plan_.overlays.muscle_labels, all);
+  if (plan_.overlays.facial_muscles && tissue) {
+    all.bodies["facial muscles"] = facial_bellies(*tissue, state.tissue);
+    all.key.push_back(facial_muscle_key());
+  }
   if (plan_.overlays.layers && tissue)
     for (int sheet = 0; sheet < tissue->mesh->sheets; ++sheet) {
       all.sheets[layer_overlay_name(sheet)] = layer_sheet(*tissue, state.tissue, sheet);
@@ -224,6 +231,7 @@ Image FrameRenderer::picture(const View& view, const Camera& camera, const Shot&
                   *plan_.wipe, plan_.settings.backdrop);
     notes.line_at = *plan_.wipe;
   }
+  draw_labels(image, shot.desk.words, camera, shot.overlays.labels, plan_.settings.backdrop);
   add_key(image, shot.desk.words, shot.overlays.key, plan_.settings.backdrop);
   if (shot.desk.distances)
     keep_clear_of(notes, shot.desk.distances->add_legend_to(image, plan_.settings.backdrop), image);

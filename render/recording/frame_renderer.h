@@ -9,12 +9,12 @@
 #include "render/output/parallel_renderers.h"
 #include "render/output/recorder.h"
 #include "render/recording/distance_drawing.h"
+#include "render/recording/muscle_bellies.h"
 #include "render/recording/picture_plan.h"
 #include "render/recording/recording_camera.h"
 #include "render/recording/render_metadata.h"
 #include "render/scene/displacement_drawing.h"
 #include "render/scene/shown_overlays.h"
-#include "sim/case/muscle.h"
 #include "sim/simulator/simulator.h"
 
 namespace condyle {
@@ -98,7 +98,7 @@ class FrameRenderer {
   PicturePlan plan_;
   FrameState rest_;  // left of a wipe
   MotionPaths paths_;
-  std::vector<Muscle> muscles_;  // the ones that are drawn
+  std::optional<MuscleBellies> muscles_;  // if they are drawn
   std::vector<View> views_;
   int kept_ = 0;
   std::deque<Desk> desks_;

@@ -19,8 +19,10 @@ struct OverlayChoice {
       false;             // nodes attached to bone, vermilion to the mandible, blue to the cranium
   bool axes = false;     // through both condyles; the finite helical axis; L, P and S
   bool paths = false;    // of the condyles and the lower incisal point, up to now
-  bool muscles = false;  // their lines of action
-  bool layers = false;   // of the soft tissue, as translucent sheets
+  bool muscles = false;  // of the jaw
+  bool muscle_labels = false;   // their names
+  bool facial_muscles = false;  // of the soft tissue
+  bool layers = false;          // of the soft tissue, as translucent sheets
 };
 
 /// Entries for the colours of `overlay_lines` and of paths.

@@ -48,7 +48,8 @@ OverlayPasses::OverlayPasses()
       tint_("tint", tint_shaders()),
       depth_("depth", depth_shaders()),
       line_("line", line_shaders()),
-      dot_("dot", marker_shaders()) {}
+      dot_("dot", marker_shaders()),
+      fibres_("fibres", fibre_shaders()) {}
 
 void OverlayPasses::set_lines(const std::string& name, const LineSet& lines) {
   if (lines.empty()) {
@@ -289,6 +290,8 @@ void OverlayPasses::add_bounds(PictureBounds& bounds, const PictureView& view) c
   }
   for (const auto& [name, sheet] : sheets_)
     for (const auto& place : sheet.positions) bounds.add(place, 0);
+  for (const auto& [name, shown] : bodies_)
+    for (const auto& place : shown.body.positions) bounds.add(place, 0);
 }
 
 void OverlayPasses::lines(const PictureView& view, int width, int height) {

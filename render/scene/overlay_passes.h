@@ -23,6 +23,7 @@ class OverlayPasses {
 
   void set_lines(const std::string& name, const LineSet& lines);
   void set_sheet(const std::string& name, const GlassSheet& sheet);
+  void set_body(const std::string& name, const FibreBody& body);
 
   /// Closes the opaque solids that the clipping plane cuts; the face except for its mouth if that
   /// is given, in its place.
@@ -35,6 +36,8 @@ class OverlayPasses {
   void add_bounds(PictureBounds& bounds, const PictureView& view) const;
   /// In the order of their names, each over those before it.
   void sheets(const PictureView& view);
+  /// `clipped`: by the picture's plane. Behind an opaque face they appear faintly through it.
+  void bodies(const PictureView& view, bool clipped);
 
  private:
   struct Lines {
@@ -49,16 +52,21 @@ class OverlayPasses {
     float opacity;
     std::optional<GpuMesh> mesh;
   };
+  struct ShownBody {
+    FibreBody body;
+    std::optional<GpuMesh> mesh;
+  };
   /// The nearest layer of a mesh, tinted, behind nearer surfaces. `moved`: see the tint's shader.
   void glass(const GpuMesh& mesh, const Eigen::Vector3f& color, float opacity,
              const PictureView& view, float moved = 0);
   void begin(GlProgram& program, const PictureView& view, const Eigen::Matrix4f& model);
 
-  GlProgram cap_, tint_, depth_, line_, dot_;
+  GlProgram cap_, tint_, depth_, line_, dot_, fibres_;
   GlVertexArray quad_;
   GlBuffer corners_;
   std::map<std::string, Lines> sets_;
   std::map<std::string, ShownSheet> sheets_;
+  std::map<std::string, ShownBody> bodies_;
   std::vector<Eigen::Vector3f> normals_;  // reused between frames
 };
 

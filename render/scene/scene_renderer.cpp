@@ -408,6 +408,10 @@ void SceneRenderer::set_sheet(const std::string& name, const GlassSheet& sheet) 
   state_->overlays.set_sheet(name, sheet);
 }
 
+void SceneRenderer::set_body(const std::string& name, const FibreBody& body) {
+  state_->overlays.set_body(name, body);
+}
+
 DrawnBox SceneRenderer::drawn_box(const Camera& camera, const PictureSettings& settings) const {
   auto& s = *state_;
   s.send_face(settings);
@@ -483,6 +487,7 @@ void SceneRenderer::draw(const Camera& camera, const PictureSettings& settings,
   for (const auto& item : items)
     if (settings.ghost && item.role() != Role::face && s.leaves_ghost(item, *settings.ghost))
       s.overlays.ghost(item, *settings.ghost, view);
+  s.overlays.bodies(view, settings.clip && settings.clip->parts.empty());
   s.overlays.lines(view, settings.width, settings.height);
   s.overlays.sheets(view);
   s.passes.translucent(items, view);

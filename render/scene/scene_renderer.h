@@ -85,6 +85,8 @@ class SceneRenderer {
   void set_lines(const std::string& name, const LineSet& lines);
   /// The same for a translucent surface.
   void set_sheet(const std::string& name, const GlassSheet& sheet);
+  /// The same for a body of fibres. Cut by a plane that cuts all parts; faint behind opaque skin.
+  void set_body(const std::string& name, const FibreBody& body);
 
   /// The box in which a picture shows anything but the background, with `drawn_air` around it.
   DrawnBox drawn_box(const Camera& camera, const PictureSettings& settings) const;

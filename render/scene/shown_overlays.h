@@ -12,11 +12,13 @@ namespace condyle {
 
 class SceneRenderer;
 
-/// Lines and sheets in space that are drawn with the parts, by name.
+/// Lines, sheets and bodies in space that are drawn with the parts, by name.
 struct Overlays {
   std::map<std::string, LineSet> lines = {};
   std::map<std::string, GlassSheet> sheets = {};
-  std::vector<KeyEntry> key = {};  // to all of them
+  std::map<std::string, FibreBody> bodies = {};
+  std::vector<PlaceLabel> labels = {};  // written on the finished picture
+  std::vector<KeyEntry> key = {};       // to all of them
 };
 
 /// Keeps the overlays of one renderer up to date.
@@ -26,7 +28,7 @@ class OverlaySender {
   void send(SceneRenderer& renderer, const Overlays& overlays);
 
  private:
-  std::set<std::string> lines_, sheets_;
+  std::set<std::string> lines_, sheets_, bodies_;
 };
 
 }  // namespace condyle

@@ -79,8 +79,8 @@ void LiveSession::update(const ViewState& view, const std::optional<Pose>& X_CM_
   const OverlayInputs inputs = OverlayInputs::of(view, paths);
   const SessionOverlayInputs own = SessionOverlayInputs::of(state_, view);
   if (is_new || inputs != overlaid_ || !(own == overlaid_by_session_)) {
-    Overlays shown =
-        view_overlays(*state_.patient, state_.motion->motion, *state_.newest, view, paths);
+    Overlays shown = view_overlays(*state_.patient, state_.motion->motion, *state_.newest, view,
+                                   paths, bellies_.of(state_.patient, view));
     add_session_overlays(state_, view, shown);
     state_.front_end.show_overlays(std::move(shown));
     overlaid_ = inputs;

@@ -33,6 +33,7 @@ class LiveSession {
 
   SessionState& state_;
   Hands applied_;  // targets sent to the simulation
+  ShownBellies bellies_;
   std::optional<OverlayInputs> overlaid_;
   SessionOverlayInputs overlaid_by_session_;
   bool map_sent_ = false, coloured_ = false;

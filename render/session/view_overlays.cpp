@@ -6,6 +6,8 @@
 
 #include "engine/core/error.h"
 #include "render/recording/anatomy_drawing.h"
+#include "render/recording/facial_bellies.h"
+#include "render/recording/muscle_looks.h"
 #include "render/recording/overlay_drawing.h"
 #include "sim/frame/body_poses.h"
 #include "sim/frame/part_names.h"
@@ -64,8 +66,21 @@ std::optional<Eigen::Hyperplane<double, 3>> midsagittal_plane(const SessionPatie
   }
 }
 
+const MuscleBellies* ShownBellies::of(const std::shared_ptr<const SessionPatient>& patient,
+                                      const ViewState& view) {
+  if (std::none_of(view.muscles.begin(), view.muscles.end(),
+                   [](const PartView& muscle) { return muscle.shown; }))
+    return nullptr;
+  if (patient_ != patient) {
+    patient_ = patient;
+    bellies_.emplace(patient->muscles, patient->scene.patient);
+  }
+  return &*bellies_;
+}
+
 Overlays view_overlays(const SessionPatient& patient, const Motion& motion, const FrameState& frame,
-                       const ViewState& view, const std::shared_ptr<const LineSet>& paths) {
+                       const ViewState& view, const std::shared_ptr<const LineSet>& paths,
+                       const MuscleBellies* bellies) {
   Overlays shown;
   const Look& look = view.look;
   const OverlayChoice choice = {.springs = look.springs,
@@ -77,9 +92,16 @@ Overlays view_overlays(const SessionPatient& patient, const Motion& motion, cons
   if (look.paths && paths) shown.lines["paths"] = *paths;
   const TissueModel* model = frame.tissue.nodes.empty() ? nullptr : patient.scene.tissue.get();
   shown.key = overlay_key(choice, model != nullptr);
-  if (std::any_of(view.muscles.begin(), view.muscles.end(),
-                  [](const PartView& muscle) { return muscle.shown; }))
-    shown.key.push_back(muscle_key());
+  if (bellies) {
+    std::vector<double> opacity;
+    for (const PartView& muscle : view.muscles)
+      opacity.push_back(muscle.shown ? muscle.opacity : 0);
+    add_muscles(*bellies, motion, frame, opacity, look.muscle_labels, shown);
+  }
+  if (look.facial_muscles && model) {
+    shown.bodies["facial muscles"] = facial_bellies(*model, frame.tissue);
+    shown.key.push_back(facial_muscle_key());
+  }
   if (model)
     for (int sheet = 0; sheet < model->mesh->sheets; ++sheet) {
       const auto i = static_cast<std::size_t>(sheet);
@@ -88,10 +110,6 @@ Overlays view_overlays(const SessionPatient& patient, const Motion& motion, cons
           layer_sheet(*model, frame.tissue, sheet, view.layers[i].opacity);
       shown.key.push_back(layer_key(*model, sheet));
     }
-  for (std::size_t m = 0; m < patient.muscles.size() && m < view.muscles.size(); ++m)
-    if (view.muscles[m].shown)
-      shown.lines["muscle " + patient.muscles[m].name] =
-          muscle_line(patient.muscles[m], motion, frame, view.muscles[m].opacity);
   if (!look.mirrored.empty()) add_mirror_image(patient, frame, look.mirrored, shown);
   return shown;
 }

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "render/recording/muscle_bellies.h"
 #include "render/scene/shown_overlays.h"
 #include "render/window/view/view_state.h"
 #include "sim/frame/frame_state.h"
@@ -12,15 +13,29 @@
 
 namespace condyle {
 
-/// Overlays of a view at one frame: axes, paths of the motion, elements of the tissue, lines of
-/// action of muscles, the mirror image of a part. `paths`: of incisor and condyles; none: not known
-/// yet.
+/// Bellies of the muscles of the patient that is shown, shaped when they are first drawn.
+class ShownBellies {
+ public:
+  /// Null while the view shows no muscle.
+  const MuscleBellies* of(const std::shared_ptr<const SessionPatient>& patient,
+                          const ViewState& view);
+
+ private:
+  std::shared_ptr<const SessionPatient> patient_ = {};
+  std::optional<MuscleBellies> bellies_ = {};
+};
+
+/// Overlays of a view at one frame: axes, paths of the motion, elements of the tissue, muscles,
+/// the mirror image of a part. `paths`: of incisor and condyles; none: not known yet. `bellies`: as
+/// ShownBellies gives them.
 Overlays view_overlays(const SessionPatient& patient, const Motion& motion, const FrameState& frame,
-                       const ViewState& view, const std::shared_ptr<const LineSet>& paths);
+                       const ViewState& view, const std::shared_ptr<const LineSet>& paths,
+                       const MuscleBellies* bellies);
 
 /// The settings of a view that determine the overlays; equal while none of them changes.
 struct OverlayInputs {
   bool springs = false, prisms = false, bone_springs = false, axes = false, paths = false;
+  bool facial_muscles = false, muscle_labels = false;
   std::vector<PartView> muscles = {}, layers = {};
   std::string mirrored = {};
   std::shared_ptr<const LineSet> known_paths = {};
@@ -28,8 +43,9 @@ struct OverlayInputs {
 
   static OverlayInputs of(const ViewState& view, std::shared_ptr<const LineSet> paths) {
     const Look& look = view.look;
-    return {look.springs, look.prisms, look.bone_springs, look.axes,       look.paths,
-            view.muscles, view.layers, look.mirrored,     std::move(paths)};
+    return {look.springs, look.prisms,         look.bone_springs,  look.axes,
+            look.paths,   look.facial_muscles, look.muscle_labels, view.muscles,
+            view.layers,  look.mirrored,       std::move(paths)};
   }
 };
 

@@ -90,10 +90,10 @@ std::uint64_t shown_hash(const ViewRecording& subject, const PicturePlan& plan) 
     shown["added"] = operation->added;
   }
   const auto overlaid = OverlayInputs::of(subject.view, subject.paths);
-  const auto& [springs, prisms, bone_springs, axes, paths, muscles, layers, mirrored, known] =
-      overlaid;
-  shown["overlays"] = {springs, prisms,         bone_springs,  axes,
-                       paths,   parts(muscles), parts(layers), mirrored};
+  const auto& [springs, prisms, bone_springs, axes, paths, facial_muscles, muscle_labels, muscles,
+               layers, mirrored, known] = overlaid;
+  shown["overlays"] = {{springs, prisms, bone_springs, axes, paths, facial_muscles, muscle_labels},
+                       {parts(muscles), parts(layers), mirrored}};
   if (paths && known)
     shown["paths"] = {lists(known->ends), lists(known->colors), lists(known->dots)};
   for (const Pose& X_PB : hand_poses(subject)) shown["bodies"].push_back(pose(X_PB));
@@ -115,9 +115,10 @@ PicturePlan plan_of(const ViewRecording& subject) {
   plan.before = record.kept;
   plan.operation = record.before;
   plan.window = WindowPicture{.camera = record.camera, .upright = record.upright};
-  plan.window->overlays = [&subject](const FrameState& frame) {
+  plan.window->overlays = [&subject,
+                           bellies = std::make_shared<ShownBellies>()](const FrameState& frame) {
     return view_overlays(*subject.patient, subject.motion->motion, frame, subject.view,
-                         subject.paths);
+                         subject.paths, bellies->of(subject.patient, subject.view));
   };
   if (look.wipe) plan.wipe = look.wipe_at;
   if (subject.view.distances) plan.map = SurfaceMap::distance;

@@ -30,7 +30,8 @@ ShaderSource depth_shaders();  // only depth: shadow map and prepass of transluc
 ShaderSource background_shaders();
 ShaderSource marker_shaders();  // contact points and dots
 ShaderSource line_shaders();
-ShaderSource cap_shaders();   // the plane that closes a cut solid
-ShaderSource tint_shaders();  // ghosts and wireframes
+ShaderSource cap_shaders();    // the plane that closes a cut solid
+ShaderSource tint_shaders();   // ghosts and wireframes
+ShaderSource fibre_shaders();  // muscles
 
 }  // namespace condyle

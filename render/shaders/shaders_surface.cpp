@@ -345,6 +345,32 @@ void main() {
 }
 )";
 
+// A muscle: bundles of fibres along it, finer ones between them, each as long as a pixel resolves
+// it. Where it is cut its inside has the colour of its surface.
+const char* const fibre_source = R"(
+float stripes(float at) {
+  float across = fwidth(at);
+  return sin(6.283185 * at) * (1.0 - smoothstep(0.25, 0.6, across));
+}
+void main() {
+  if (!gl_FrontFacing) {
+    result = vec4(display(cut_face(0.8 * albedo)), opacity);
+    return;
+  }
+  vec3 v = normalize(to_eye), n = normalize(world_normal);
+  float nv = clamp(dot(n, v), 0.0, 1.0);
+  float bundle = stripes(mapped_value), fine = stripes(3.0 * mapped_value + 0.3);
+  float groove = 0.6 * bundle + 0.4 * fine;
+  vec3 light = key_color * wrapped(dot(n, key_direction), 0.2)
+             + fill_color * wrapped(dot(n, fill_direction), 0.2)
+             + rim_color * wrapped(dot(n, rim_direction), 0.2) + ambient_light(n, v);
+  vec3 c = albedo * (1.0 + 0.22 * groove) * light * mix(0.7, 1.0, nv);
+  c += (0.03 + 0.02 * groove) * (key_color * specular(n, v, key_direction, 0.42)
+                               + fill_color * specular(n, v, fill_direction, 0.42));
+  result = vec4(display(c), opacity);
+}
+)";
+
 ShaderSource lit(const Shading& shading, const char* own) {
   const std::string start = shading_constants(shading);
   if (shading.deferred)
@@ -357,6 +383,7 @@ ShaderSource lit(const Shading& shading, const char* own) {
 
 ShaderSource cap_shaders() { return lit({}, cap_source); }
 ShaderSource tint_shaders() { return lit({}, tint_source); }
+ShaderSource fibre_shaders() { return lit({}, fibre_source); }
 ShaderSource surface_shaders(const Shading& shading) { return lit(shading, surface_source); }
 ShaderSource skin_shaders(const Shading& shading) { return lit(shading, skin_source); }
 ShaderSource interior_shaders(const Shading& shading) { return lit(shading, interior_source); }

@@ -27,7 +27,8 @@ nlohmann::json edits_of(const ViewState& view) {
   // Complete: a new field of Look does not compile until it is added here.
   const auto& [clip, clip_skin, clip_from, clip_fraction, cut_away, cut_at, cut_radius_mm, ghost,
                wireframe, patches, paths, axes, springs, prisms, bone_springs, displacement,
-               scale_bar, side_letters, folds, wipe, wipe_at, mirrored] = view.look;
+               facial_muscles, muscle_labels, scale_bar, side_letters, folds, wipe, wipe_at,
+               mirrored] = view.look;
   return {{"clip", clip},
           {"clip_from", std::string(1, clip_from)},
           {"clip_share", clip_fraction},
@@ -48,6 +49,8 @@ nlohmann::json edits_of(const ViewState& view) {
           {"springs", springs},
           {"prisms", prisms},
           {"bone_springs", bone_springs},
+          {"facial_muscles", facial_muscles},
+          {"muscle_labels", muscle_labels},
           {"scale_bar", scale_bar},
           {"letters", side_letters},
           {"folds", folds},

@@ -238,6 +238,7 @@ void Window::State::interface_frame() {
       .progress_fraction = work.progress_fraction,
       .can_cancel = work.can_cancel,
       .key = overlays.key,
+      .labels = overlays.labels,
       .hover_text = hover_text(),
       .plots = plots,
       .kept = comparison.by_hand,
@@ -390,8 +391,7 @@ void Window::State::draw(bool always, Image* copy) {
   });
   pacing.draw([&] {
     if (copy) *copy = read_back();
-    if (std::exchange(save_window, false))
-      render_thread->save(read_back(), options.picture_folder);
+    if (std::exchange(save_window, false)) render_thread->save(read_back(), options.picture_folder);
   });
   pacing.draw([&] { glfwSwapBuffers(window); });
   pacing.frames_due = std::max(0, pacing.frames_due - 1);

@@ -39,8 +39,9 @@ template <class Visit, class AnyLook>
 void look_fields(Visit& visit, AnyLook& look) {
   // Complete: a new field does not compile until it is added here.
   auto& [clip, clip_skin, clip_from, clip_fraction, cut_away, cut_at, cut_radius_mm, ghost,
-         wireframe, patches, paths, axes, springs, prisms, bone_springs, displacement, scale_bar,
-         side_letters, folds, wipe, wipe_at, mirrored] = look;
+         wireframe, patches, paths, axes, springs, prisms, bone_springs, displacement,
+         facial_muscles, muscle_labels, scale_bar, side_letters, folds, wipe, wipe_at, mirrored] =
+      look;
   visit.flag("clip", clip);
   visit.flag("clip_skin", clip_skin);
   visit.letter("clip_from", clip_from, "LRAPSI");
@@ -57,6 +58,8 @@ void look_fields(Visit& visit, AnyLook& look) {
   visit.flag("prisms", prisms);
   visit.flag("bone_springs", bone_springs);
   visit.flag("displacement", displacement);
+  visit.flag("facial_muscles", facial_muscles);
+  visit.flag("muscle_labels", muscle_labels);
   visit.flag("scale_bar", scale_bar);
   visit.flag("letters", side_letters);
   visit.flag("folds", folds);

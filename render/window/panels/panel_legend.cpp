@@ -6,6 +6,7 @@
 
 #include "render/image/text_panel_colours.h"
 #include "render/overlay/overlays.h"
+#include "render/overlay/place_labels.h"
 #include "render/scene/displacement_drawing.h"
 #include "render/window/panels/panels_drawing.h"
 
@@ -154,6 +155,34 @@ ViewRect Panels::Drawing::key() {
                  palette().text, entry.words.c_str());
   }
   return pane;
+}
+
+/// Names at places of overlays, each with a line to its place.
+void Panels::Drawing::overlay_labels() {
+  if (input.labels.empty()) return;
+  const Theme& theme = panels.theme_;
+  const ViewRect& r = layout.view;
+  ImDrawList& list = *ImGui::GetBackgroundDrawList();
+  const float letters = theme.small->FontSize, row = letters + pen.px(4), pad = pen.px(3);
+  const auto on_screen = [&](const Eigen::Vector2d& p) {
+    return ImVec2{static_cast<float>(r.x + p.x()), static_cast<float>(r.y + p.y())};
+  };
+  for (const PlacedLabel& label :
+       placed_labels(input.labels, input.camera, {r.width, r.height}, row,
+                     [&](const std::string& words) { return text_width(theme.small, words); })) {
+    const ImVec2 place = on_screen(label.place), corner = on_screen(label.corner);
+    const auto wide = static_cast<float>(label.width);
+    const bool left = corner.x < place.x;
+    const ImVec2 end = {left ? corner.x + wide + pad : corner.x - pad, corner.y + row / 2};
+    list.AddLine(place, end, palette().text, pen.px(1));
+    list.AddCircleFilled(place, pen.px(2), palette().text, 12);
+    list.AddRectFilled({corner.x - pad, corner.y}, {corner.x + wide + pad, corner.y + row},
+                       palette().floating, pen.px(3));
+    list.AddText(theme.small, letters, {std::round(corner.x), std::round(corner.y + pen.px(2))},
+                 palette().text, label.words.c_str());
+    panels.items_.push_back(
+        {"label:" + label.words, "", {corner.x, corner.y, wide, row}, label.words});
+  }
 }
 
 void Panels::Drawing::hover_text() {

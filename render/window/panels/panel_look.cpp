@@ -120,6 +120,7 @@ void Panels::Drawing::look_overlays() {
   if (has_tissue) look_displacement();
   tick_box(pen, "paths", "Paths of incisor and condyles", look.paths);
   tooltip(pen, "Paths of the lower incisal point and of the condyles over the whole motion");
+  look_muscles(has_tissue);
   if (has_tissue) look_springs();
   tick_box(pen, "wireframe", "Triangles", look.wireframe);
   tick_box(pen, "axes", "Axes", look.axes);
@@ -157,6 +158,17 @@ void Panels::Drawing::look_displacement() {
     if (view.skin_opacity < 0.5) view.skin_opacity = 1;
   }
   tooltip(pen, "The skin coloured by the distance of each point from its rest position");
+}
+
+void Panels::Drawing::look_muscles(bool has_tissue) {
+  Look& look = view.look;
+  if (has_tissue) {
+    tick_box(pen, "facial-muscles", "Facial muscles", look.facial_muscles);
+    tooltip(pen, "Muscles of expression in the soft tissue. Thin the skin to see them");
+  }
+  if (input.scene.muscles.empty()) return;
+  tick_box(pen, "muscle-labels", "Names of muscles", look.muscle_labels);
+  tooltip(pen, "At the jaw muscles that are shown, on the near side");
 }
 
 void Panels::Drawing::look_springs() {

@@ -55,7 +55,7 @@ std::vector<TreeGroup> groups_of(const PanelInput& input, ViewState& view) {
       {"soft", "Face and mouth", "Skin, eyes, gums, tongue. The opacity of the skin is set above"},
       {"free", "Segments", "Segments and transplants, which a hand can move (key M)"},
       {"muscles", "Muscles",
-       "Their lines of action: dark red at rest, bright yellow when fully excited"},
+       "Bellies of the jaw muscles, coloured by group: dark at rest, bright when fully excited"},
       {"layers", "Soft tissue", "Its layers, each drawn by its outer surface"}};
   const WindowScene& scene = input.scene;
   for (std::size_t i = 0; i < scene.parts.size(); ++i) {

@@ -94,6 +94,7 @@ void Panels::Drawing::view_signs() {
     return;
   }
 
+  overlay_labels();
   const ViewRect legend_pane = legend(), key_pane = key();
   // The patient's sides at the edges of the view, beside other drawings.
   const Eigen::Matrix3d axes = picture_axes(input.camera);

@@ -142,6 +142,7 @@ struct Panels::Drawing {
   void look_overlays();
   void look_distances();
   void look_displacement();
+  void look_muscles(bool has_tissue);
   void look_springs();
   void look_panel_size();
   void scale();     // panel_view.cpp
@@ -160,6 +161,7 @@ struct Panels::Drawing {
   void cube();
   // panel_legend.cpp; each returns its pane, empty without one:
   ViewRect legend();  // of a map, in the lower left corner of the view
+  void overlay_labels();
   ViewRect key();     // to overlays, in its upper right corner
   void hover_text();  // of the hovered surface
   void beside_mouse(const std::string& words);

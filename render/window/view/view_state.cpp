@@ -16,6 +16,7 @@ bool ViewState::shows_face(const WindowScene& scene) const {
 
 bool ViewState::simulates_tissue(const WindowScene& scene) const {
   return shows_face(scene) || look.springs || look.prisms || look.bone_springs ||
+         look.facial_muscles ||
          std::any_of(layers.begin(), layers.end(),
                      [](const PartView& layer) { return layer.shown; });
 }

@@ -102,7 +102,9 @@ struct Look {
   bool patches = false;    // only where surfaces touch, of the map of distances
   bool paths = false, axes = false;
   bool springs = false, prisms = false, bone_springs = false;  // of the soft tissue
-  bool displacement = false;  // the skin coloured by its displacement from rest
+  bool displacement = false;    // the skin coloured by its displacement from rest
+  bool facial_muscles = false;  // of the soft tissue
+  bool muscle_labels = true;    // names of the muscles that are shown
   bool scale_bar = true, letters = true;
   bool folds = true;          // of compressed skin, in pictures alone
   bool wipe = false;          // the kept state at the left, the present one at the right

@@ -397,5 +397,59 @@ TEST(CameraPath, StopsAtItsViewsAndTurnsBetweenThem) {
   EXPECT_NEAR(between.direction.norm(), 1, 1e-12);
 }
 
+/// A ball as a body of fibres.
+FibreBody fibre_ball(const Eigen::Vector3d& center, double radius) {
+  const TriMesh mesh = ball(center, radius);
+  FibreBody body;
+  for (const auto& v : mesh.vertices) {
+    body.positions.push_back(v.cast<float>());
+    body.colors.emplace_back(0.1f, 0.4f, 0.6f);
+    body.fibres.push_back(static_cast<float>(v.z() / 3));
+  }
+  body.triangles = mesh.triangles;
+  return body;
+}
+
+TEST_F(Overlays, ABodyOfFibresIsHiddenByBoneAndStriped) {
+  const std::vector<Part> parts = {skull_ball()};
+  SceneRenderer renderer(parts);
+  auto settings = mask_settings();
+  settings.shadows = false;
+  const Image bare = renderer.picture(front_camera(), settings);
+  renderer.set_body("muscle", fibre_ball({0, 40, 0}, 20));
+  EXPECT_EQ(renderer.picture(front_camera(), settings).rgba, bare.rgba) << "behind the bone";
+  renderer.set_body("muscle", fibre_ball({0, -40, 0}, 20));
+  const Image seen = renderer.picture(front_camera(), settings);
+  const auto blue = [](const Pixel& p) { return p.b > p.r + 30; };
+  EXPECT_GT(count(seen, blue), 3000);
+  int rises = 0;  // of brightness, down the middle
+  for (int y = 71; y < 130; ++y) rises += pixel(seen, 100, y).b > pixel(seen, 100, y - 1).b + 2;
+  EXPECT_GT(rises, 5) << "no stripes";
+  FibreBody faint = fibre_ball({0, -40, 0}, 20);
+  faint.opacity = 0.3f;
+  renderer.set_body("muscle", faint);
+  const Pixel mixed = pixel(renderer.picture(front_camera(), settings), 100, 100);
+  EXPECT_GT(mixed.r, pixel(seen, 100, 100).r + 30);
+  renderer.set_body("muscle", {});
+  EXPECT_EQ(renderer.picture(front_camera(), settings).rgba, bare.rgba);
+}
+
+TEST_F(Overlays, ABodyOfFibresIsFaintThroughSkinAndCutWithEverything) {
+  const std::vector<Part> parts = {make_part("face", Role::face, ball({0, 0, 0}, 40))};
+  SceneRenderer renderer(parts);
+  auto settings = mask_settings();
+  settings.shadows = false;
+  const Pixel skin = pixel(renderer.picture(front_camera(), settings), 100, 100);
+  renderer.set_body("muscle", fibre_ball({0, 0, 0}, 20));
+  const Pixel through = pixel(renderer.picture(front_camera(), settings), 100, 100);
+  EXPECT_LT(through.r, skin.r - 20);
+  EXPECT_GT(through.r, skin.r / 3);
+  settings.skin_opacity = 0;
+  settings.clip = {.point = {0, 0, 0}, .normal = {1, 0, 0}};
+  const Image half = renderer.picture(front_camera(), settings);
+  EXPECT_EQ(pixel(half, 115, 100).a, 0);
+  EXPECT_EQ(pixel(half, 85, 100).a, 255);
+}
+
 }  // namespace
 }  // namespace condyle
