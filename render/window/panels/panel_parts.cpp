@@ -84,7 +84,8 @@ void Panels::Drawing::part_list() {
     heading(pen, "Skin", fmt::format("{:.0f} %", 100 * view.skin_opacity));
     slider(pen, "skin", view.skin_opacity,
            {.width = ImGui::GetContentRegionAvail().x, .typed = 100});
-    tooltip(pen, "How dense the skin is. Key K turns it on and off");
+    tooltip(pen,
+            "How dense the skin is. Key K turns it on and off; off leaves bones and teeth alone");
     const float gap = pen.px(5);
     const float wide = std::floor((ImGui::GetContentRegionAvail().x - 2 * gap) / 3);
     for (const SkinChoice& choice : skin_choices) {

@@ -4,6 +4,15 @@
 #include <utility>
 
 namespace condyle {
+namespace {
+
+/// Eyes, gums and tongue: without the skin that holds them they float.
+bool is_behind_skin(Role role) {
+  return role == Role::eyes || role == Role::upper_gums || role == Role::lower_gums ||
+         role == Role::tongue;
+}
+
+}  // namespace
 
 bool ViewState::shows_face(const WindowScene& scene) const {
   if (skin_opacity <= 0) return false;
@@ -52,8 +61,14 @@ void ViewState::set_edits(Edits other) {
 
 std::map<std::string, double> part_opacities(const WindowScene& scene, const ViewState& view) {
   std::map<std::string, double> opacities;
-  for (std::size_t i = 0; i < scene.parts.size() && i < view.parts.size(); ++i)
-    opacities[scene.parts[i].name] = view.parts[i].shown ? view.parts[i].opacity : 0;
+  const bool without_skin = view.skin_opacity <= 0 &&
+                            std::any_of(scene.parts.begin(), scene.parts.end(),
+                                        [](const Part& part) { return part.role == Role::face; });
+  for (std::size_t i = 0; i < scene.parts.size() && i < view.parts.size(); ++i) {
+    const Part& part = scene.parts[i];
+    const bool bare = without_skin && is_behind_skin(part.role);
+    opacities[part.name] = view.parts[i].shown && !bare ? view.parts[i].opacity : 0;
+  }
   return opacities;
 }
 

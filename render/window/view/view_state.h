@@ -185,7 +185,8 @@ struct ViewState : Edits, PanelChoice {
   void fit(const WindowScene& scene);
 };
 
-/// Opacity of every part by name, hidden ones 0, as a SceneRenderer takes it.
+/// Opacity of every part by name, hidden ones 0, as a SceneRenderer takes it. With the skin off
+/// eyes, gums and tongue are hidden too: bones and teeth remain.
 std::map<std::string, double> part_opacities(const WindowScene& scene, const ViewState& view);
 
 /// Performance of the simulation loop. Zero where unknown.
