@@ -97,8 +97,39 @@ void OverlayPasses::begin(GlProgram& program, const PictureView& view,
   program.set("cut_ball", no_ball);
 }
 
+template <class Draw>
+void OverlayPasses::cap(const DrawItem& item, const Eigen::Matrix4f& model,
+                        const Eigen::Vector3f& color, const PictureView& view, const Draw& draw) {
+  // Winding number of the solid where the line of sight crosses the plane.
+  glClear(GL_STENCIL_BUFFER_BIT);
+  glStencilFunc(GL_ALWAYS, 0, 0xff);
+  glStencilOpSeparate(GL_FRONT, GL_KEEP, GL_KEEP, GL_DECR_WRAP);
+  glStencilOpSeparate(GL_BACK, GL_KEEP, GL_KEEP, GL_INCR_WRAP);
+  glDisable(GL_DEPTH_TEST);
+  glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+  begin(depth_, view, model);
+  depth_.set("clip_plane", view.clip_plane);
+  glEnable(GL_CLIP_DISTANCE0);
+  draw();
+  glDisable(GL_CLIP_DISTANCE0);
+
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_LEQUAL);
+  glStencilFunc(GL_NOTEQUAL, 0, 0xff);
+  glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
+  begin(cap_, view, Eigen::Matrix4f::Identity());
+  set_cut(cap_, item, view);
+  cap_.set("cut", Eigen::Vector3f(color.array().pow(2.2f)));
+  cap_.set("clip_plane", nothing_clipped);  // the cap lies in the plane itself
+  if (item.holed) glEnable(GL_CLIP_DISTANCE1);
+  glBindVertexArray(quad_);
+  glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+  glDisable(GL_CLIP_DISTANCE1);
+}
+
 void OverlayPasses::caps(std::span<const DrawItem> items, const PictureView& view,
-                         const MouthCavity* mouth) {
+                         const MouthCavity* mouth, std::span<const SectionSolid> within) {
   std::vector<const DrawItem*> cut;
   for (const auto& item : items)
     if (item.clipped && item.opaque()) cut.push_back(&item);
@@ -125,36 +156,22 @@ void OverlayPasses::caps(std::span<const DrawItem> items, const PictureView& vie
   glDisable(GL_CULL_FACE);
   glStencilMask(0xff);
   glClearStencil(0);
+  const auto tongue = std::find_if(
+      items.begin(), items.end(), [](const DrawItem& item) { return item.role() == Role::tongue; });
   for (const auto* item : cut) {
-    // Winding number of the solid where the line of sight crosses the plane.
-    glClear(GL_STENCIL_BUFFER_BIT);
-    glStencilFunc(GL_ALWAYS, 0, 0xff);
-    glStencilOpSeparate(GL_FRONT, GL_KEEP, GL_KEEP, GL_DECR_WRAP);
-    glStencilOpSeparate(GL_BACK, GL_KEEP, GL_KEEP, GL_INCR_WRAP);
-    glDisable(GL_DEPTH_TEST);
-    glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
     const bool hollow = mouth && item->role() == Role::face;
     item->drawable->cover(hollow ? mouth->fan() : std::vector<Eigen::Vector3i>());
-    begin(depth_, view, item->model);
-    depth_.set("clip_plane", view.clip_plane);
-    glEnable(GL_CLIP_DISTANCE0);
-    item->drawable->mesh.draw();
-    item->drawable->mesh.draw_cover();
-    if (hollow) mouth->mesh().draw();
-    glDisable(GL_CLIP_DISTANCE0);
-
-    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-    glEnable(GL_DEPTH_TEST);
-    glDepthFunc(GL_LEQUAL);
-    glStencilFunc(GL_NOTEQUAL, 0, 0xff);
-    glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
-    begin(cap_, view, Eigen::Matrix4f::Identity());
-    set_cut(cap_, *item, view);
-    cap_.set("clip_plane", nothing_clipped);  // the cap lies in the plane itself
-    if (item->holed) glEnable(GL_CLIP_DISTANCE1);
-    glBindVertexArray(quad_);
-    glDrawArrays(GL_TRIANGLE_STRIP, 0, 4);
-    glDisable(GL_CLIP_DISTANCE1);
+    cap(*item, item->model, cut_color_of(item->role()), view, [&] {
+      item->drawable->mesh.draw();
+      item->drawable->mesh.draw_cover();
+      if (hollow) mouth->mesh().draw();
+    });
+    if (!hollow) continue;
+    for (const SectionSolid& solid : within) {
+      const bool moves = solid.with_tongue && tongue != items.end();
+      cap(*item, moves ? tongue->model : Eigen::Matrix4f(Eigen::Matrix4f::Identity()), solid.color,
+          view, [&] { solid.mesh.draw(); });
+    }
   }
   glDepthFunc(GL_LESS);
   glDisable(GL_STENCIL_TEST);

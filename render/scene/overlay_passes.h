@@ -9,6 +9,7 @@
 #include "render/overlay/overlays.h"
 #include "render/scene/mouth_cavity.h"
 #include "render/scene/passes.h"
+#include "render/scene/section_anatomy.h"
 
 namespace condyle {
 
@@ -26,8 +27,9 @@ class OverlayPasses {
   void set_body(const std::string& name, const FibreBody& body);
 
   /// Closes the opaque solids that the clipping plane cuts; the face except for its mouth if that
-  /// is given, in its place.
-  void caps(std::span<const DrawItem> items, const PictureView& view, const MouthCavity* mouth);
+  /// is given, in its place, and with the solids that only its section shows.
+  void caps(std::span<const DrawItem> items, const PictureView& view, const MouthCavity* mouth,
+            std::span<const SectionSolid> within = {});
   void wireframe(const DrawItem& item, const PictureView& view);
   /// The part at rest: behind nearer surfaces, only its nearest layer.
   void ghost(const DrawItem& item, const Ghost& look, const PictureView& view);
@@ -59,6 +61,10 @@ class OverlayPasses {
   /// The nearest layer of a mesh, tinted, behind nearer surfaces. `moved`: see the tint's shader.
   void glass(const GpuMesh& mesh, const Eigen::Vector3f& color, float opacity,
              const PictureView& view, float moved = 0);
+  /// Marks in the stencil where the plane cuts a solid that `draw` draws, then fills it.
+  template <class Draw>
+  void cap(const DrawItem& item, const Eigen::Matrix4f& model, const Eigen::Vector3f& color,
+           const PictureView& view, const Draw& draw);
   void begin(GlProgram& program, const PictureView& view, const Eigen::Matrix4f& model);
 
   GlProgram cap_, tint_, depth_, line_, dot_, fibres_;

@@ -68,6 +68,7 @@ struct SceneRenderer::State {
   // none where nothing protrudes.
   std::map<std::size_t, std::optional<Drawable>> beneath;
   std::optional<MouthCavity> mouth;  // from the first picture of an opaque face on
+  std::optional<std::vector<SectionSolid>> section_solids;  // from the first section on
   GpuPoints contacts;
   // State of the last frame:
   std::vector<Pose> poses;  // of each drawable
@@ -481,7 +482,10 @@ void SceneRenderer::draw(const Camera& camera, const PictureSettings& settings,
   auto surfaces = items;
   if (mouth) surfaces.push_back(*mouth);
   s.passes.opaque(surfaces, view);
-  s.overlays.caps(items, view, mouth ? &*s.mouth : nullptr);
+  if (view.sectioned && !s.section_solids) s.section_solids = condyle::section_solids(s.parts);
+  s.overlays.caps(items, view, mouth ? &*s.mouth : nullptr,
+                  view.sectioned ? std::span<const SectionSolid>(*s.section_solids)
+                                 : std::span<const SectionSolid>());
   if (!settings.transparent) s.passes.background(view, settings.backdrop);
   if (settings.contacts) s.passes.contacts(s.contacts, view, !view.opaque_face);
   for (const auto& item : items)

@@ -35,13 +35,13 @@ Eigen::Vector3f cut_color_of(Role role) {
     case Role::lower_teeth:
       return {.93f, .90f, .80f};
     case Role::face:
-      return {.70f, .42f, .38f};
+      return {.60f, .55f, .53f};  // neutral: fat, muscle and brain are not distinguished
     case Role::eyes:
       return {.86f, .88f, .88f};
     case Role::upper_gums:
     case Role::lower_gums:
     case Role::tongue:
-      return {.66f, .34f, .33f};
+      return {.64f, .43f, .41f};
     case Role::transplant:
       return {.52f, .72f, .68f};
     default:
