@@ -30,7 +30,7 @@ Eigen::Vector3f skin_color(const Vector3d& at) {
   static const Primitive lids = lid_opening();
   const double x = std::abs(at.x()), y = at.y(), z = at.z();
   const Vector3d p(x, y, z);
-  Vector3d color(.86, .66, .55);
+  Vector3d color(.855, .665, .575);
   const auto mix = [&](const Vector3d& other, double weight) {
     const double w = std::clamp(weight, 0.0, 1.0);
     color = color * (1 - w) + other * w;
@@ -40,16 +40,20 @@ Eigen::Vector3f skin_color(const Vector3d& at) {
   };
   mix({.82, .58, .48}, .25 * mottle(at, 26) + .12 * mottle(at, 7));
   const double blood = 1 + .45 * mottle(at, 15) + .2 * mottle(at, 5);
-  mix({.84, .51, .45}, .30 * blood * spot({42, -76, -14}, {22, 27, 18}));  // cheek
-  mix({.84, .50, .44}, .32 * blood * spot({0, -116, -16}, {13, 10, 10}));  // nose
+  mix({.90, .73, .62}, .45 * spot({0, -95, 52}, {46, 34, 26}));            // forehead
+  mix({.88, .72, .61}, .35 * spot({20, -98, -6}, {9, 12, 12}));            // beside the nose
+  mix({.83, .49, .43}, .37 * blood * spot({44, -74, -16}, {21, 28, 18}));  // cheek
+  mix({.83, .49, .43}, .34 * blood * spot({0, -116, -16}, {13, 10, 10}));  // nose
+  mix({.82, .47, .42}, .25 * blood * spot({0, -97, -82}, {12, 9, 8}));     // chin
   if (x > 68)
-    mix({.82, .50, .42}, .6 * smooth_step((x - 68) / 8) * spot({84, 14, 0}, {14, 25, 38}));
+    mix({.82, .45, .38}, .75 * smooth_step((x - 68) / 8) * spot({84, 14, 0}, {14, 25, 38}));
   mix({.70, .50, .44}, .35 * spot({31, -84, 16}, {17, 14, 9}));  // around the eye
+  mix({.64, .50, .50}, .34 * spot({27, -88, 3}, {13, 9, 5}));    // veins below it
   // Shaven beard: denser on chin and upper lip, thinning toward cheek and throat.
   const double beard =
       .9 * spot({0, -98, -76}, {34, 26, 26}) + .8 * spot({0, -105, -37}, {24, 12, 8}) +
       .7 * spot({46, -52, -66}, {26, 34, 24}) + .5 * spot({62, -18, -40}, {14, 16, 30});
-  mix({.60, .48, .43}, std::min(beard, 1.0) * (.30 + .07 * mottle(at, 3) + .05 * mottle(at, 11)));
+  mix({.53, .46, .44}, std::min(beard, 1.0) * (.34 + .10 * mottle(at, 3) + .06 * mottle(at, 11)));
 
   if (y < -76) {  // lips
     const double s = std::min(x / 25.6, 1.0);
@@ -75,13 +79,15 @@ Eigen::Vector3f skin_color(const Vector3d& at) {
     mix({.24, .15, .12}, (upper ? .9 : .55) * std::exp(-std::pow(lid / (upper ? 1.0 : .7), 2)));
   }
   mix({.78, .47, .43}, .8 * spot({18.6, -80.5, 12.5}, {2.6, 3, 2.2}));  // caruncle
-  // Hair cut to the skin.
-  const double above_line = z - hair_line(y) + 3 * mottle(at, 19) + 3 * mottle(at, 6);
-  const double hair =
-      smooth_step(above_line / 22 + .5) * (.75 + .25 * smooth_step(above_line / 60));
+  // Hair cut to the skin: ever fewer and finer towards its border.
+  const double above_line =
+      z - hair_line(y) + 4 * mottle(at, 23) + 3 * mottle(at, 7) + 3 * mottle(at, 2.6);
+  const double hair = smooth_step(above_line / 44 + .4) * (.8 + .2 * smooth_step(above_line / 70));
   const double ear =
       smooth_step((x - 64) / 8) * smooth_step((1.3 - std::hypot((y - 13) / 25, z / 38)) / .35);
-  mix({.42, .36, .33}, hair * (1 - ear) * (.56 + .04 * mottle(at, 9) + .04 * mottle(at, 3)));
+  mix({.44, .40, .385}, hair * (1 - ear) * (.62 + .03 * mottle(at, 9) + .05 * mottle(at, 2.6)));
+  // The cut through the neck, and a dark border above it.
+  mix({.13, .11, .11}, smooth_step((-168 - z) / 20));
   return color.cast<float>();
 }
 
