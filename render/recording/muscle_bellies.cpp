@@ -230,9 +230,13 @@ FibreBody MuscleBellies::body(std::size_t index, const Motion& motion, const Fra
     return Pose{};
   };
   const Pose X_CO = pose_of_body(muscle.origin_body), X_CI = pose_of_body(muscle.insertion_body);
-  const double rest_mm = (muscle.insertion - muscle.origin).norm();
-  const double now_mm = (X_CI * muscle.insertion - X_CO * muscle.origin).norm();
-  const double thicker = std::sqrt(rest_mm / std::max(now_mm, 0.2 * rest_mm));
+  const Vector3d rest_span = muscle.insertion - muscle.origin,
+                 now_span = X_CI * muscle.insertion - X_CO * muscle.origin;
+  const double rest_mm = rest_span.norm(),
+               thicker = std::sqrt(rest_mm / std::max(now_span.norm(), 0.2 * rest_mm));
+  // One away from bone turns as a whole; others keep to the bones that they cover.
+  const bool turns = belly_shape(muscle.kind).lie == Lie::straight;
+  const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(rest_span, now_span);
   const Vector3f color = muscle_color(group_of(muscle), excitation_of(muscle, motion, frame));
 
   FibreBody made{
@@ -240,17 +244,18 @@ FibreBody MuscleBellies::body(std::size_t index, const Motion& motion, const Fra
   made.positions.reserve(belly.rest.size());
   for (int ring = 0; ring < ring_count; ++ring) {
     const double s = along_belly(ring);
-    std::array<Vector3d, strap_sides> places;
+    const auto carried = [&](const Vector3d& p) -> Vector3d {
+      return (1 - s) * (X_CO * p) + s * (X_CI * p);
+    };
+    const std::span<const Vector3d> rest =
+        std::span(belly.rest).subspan(static_cast<std::size_t>(ring) * strap_sides, strap_sides);
     Vector3d center = Vector3d::Zero();
-    for (int side = 0; side < strap_sides; ++side) {
-      const auto k = static_cast<std::size_t>(side);
-      const Vector3d& p = belly.rest[static_cast<std::size_t>(ring * strap_sides + side)];
-      places[k] = (1 - s) * (X_CO * p) + s * (X_CI * p);
-      center += places[k] / strap_sides;
-    }
+    for (const Vector3d& p : rest) center += p / strap_sides;
+    const Vector3d center_now = carried(center);
     const float red = flesh(muscle, s);
-    for (const Vector3d& place : places) {
-      made.positions.push_back((center + thicker * (place - center)).cast<float>());
+    for (const Vector3d& p : rest) {
+      const Vector3d offset = turns ? Vector3d(turn * (p - center)) : carried(p) - center_now;
+      made.positions.push_back((center_now + thicker * offset).cast<float>());
       made.colors.push_back(tendon_color + red * (color - tendon_color));
     }
   }
