@@ -358,6 +358,30 @@ TEST_F(MouthSection, IsFleshRoundAboutAndHollowInside) {
   EXPECT_EQ(kept.rgba, renderer.picture(side, settings).rgba);
 }
 
+TEST_F(MouthSection, OfAHeadWithATongueHasADarkAirwayBehindIt) {
+  auto parts = head_with_mouth();
+  parts.push_back(make_part("tongue", Role::tongue, ball({0, -25, -5}, 15)));
+  SceneRenderer renderer(parts);
+  auto settings = mask_settings(300);
+  settings.shadows = false;
+  settings.clip = {.point = {0.3, 0, 0}, .normal = {1, 0, 0}};
+  Camera side = front_camera(150);
+  side.direction = {1, 0, 0};
+  const auto at = [&](const Image& image, double y, double z) {
+    return pixel(image, static_cast<int>(150 + 2 * y), static_cast<int>(150 - 2 * z));
+  };
+  const Image section = renderer.picture(side, settings);
+  const Pixel flesh = at(section, 40, 0), airway = at(section, -4.6, -9.2),
+              tongue = at(section, -25, -5);
+  EXPECT_LT(airway.r, 40);
+  EXPECT_GT(flesh.r, 80);
+  EXPECT_LT(flesh.r - flesh.b, 25) << "neutral";
+  EXPECT_GT(tongue.r - tongue.b, 25);
+  // A section beside it has none.
+  settings.clip->point.x() = 20;
+  EXPECT_NEAR(at(renderer.picture(side, settings), -4.6, -9.2).r, flesh.r, 12);
+}
+
 TEST_F(MouthSection, WithoutOneTheOpenMouthIsDarkRedAndNothingIsSeenThroughIt) {
   auto parts = head_with_mouth();
   std::erase_if(parts[0].mesh.triangles, [&](const Eigen::Vector3i& t) {
