@@ -29,7 +29,7 @@ void add_strap(FibreBody& body, std::vector<Vector3d> places, const Vector3d& ax
   if (loop) places.pop_back();
   const auto n = static_cast<int>(places.size());
   const int first = static_cast<int>(body.positions.size());
-  const Eigen::Vector3f color = muscle_color(MuscleGroup::facial, 0);
+  const Eigen::Vector3f color = muscle_color(MuscleAction::facial, 0);
   const auto at = [&](int i) -> const Vector3d& {
     return places[static_cast<std::size_t>(loop ? (i + n) % n : std::clamp(i, 0, n - 1))];
   };

@@ -237,7 +237,7 @@ FibreBody MuscleBellies::body(std::size_t index, const Motion& motion, const Fra
   // One away from bone turns as a whole; others keep to the bones that they cover.
   const bool turns = belly_shape(muscle.kind).lie == Lie::straight;
   const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(rest_span, now_span);
-  const Vector3f color = muscle_color(group_of(muscle), excitation_of(muscle, motion, frame));
+  const Vector3f color = muscle_color(action_of(muscle), excitation_of(muscle, motion, frame));
 
   FibreBody made{
       .triangles = belly.triangles, .fibres = belly.fibres, .opacity = static_cast<float>(opacity)};

@@ -12,12 +12,12 @@
 namespace condyle {
 
 /// What a muscle does, by which it is coloured.
-enum class MuscleGroup { elevator, protrusor, depressor, hyoid, facial };
+enum class MuscleAction { elevator, protrusor, depressor, hyoid, facial };
 
-MuscleGroup group_of(const Muscle& muscle);
+MuscleAction action_of(const Muscle& muscle);
 
 /// sRGB, in Okabe and Ito's palette: darker at rest, bright when fully excited.
-Eigen::Vector3f muscle_color(MuscleGroup group, double excitation);
+Eigen::Vector3f muscle_color(MuscleAction group, double excitation);
 /// Of a tendon, sRGB.
 inline const Eigen::Vector3f tendon_color{0.88f, 0.85f, 0.76f};
 
