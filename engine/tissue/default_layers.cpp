@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <string>
 
 #include "engine/core/error.h"
@@ -22,16 +24,24 @@ LayerStack default_layers(int count) {
   }
 }
 
-LayerStack split_layers(const LayerStack& layers, double depth_mm, double edge_mm) {
+LayerStack split_layers(const LayerStack& layers, double depth_mm, double edge_mm, int most) {
+  std::vector<int> pieces;
+  const auto divided = [&](double longest_mm) {
+    pieces.clear();
+    for (const double fraction : layers.fraction)
+      pieces.push_back(
+          std::max(1, static_cast<int>(std::ceil(fraction * depth_mm / longest_mm - 1e-9))));
+    return std::accumulate(pieces.begin(), pieces.end(), 0);
+  };
+  most = std::max(most, static_cast<int>(layers.fraction.size()));
+  for (double longest_mm = 1.2 * edge_mm; divided(longest_mm) > most;) longest_mm *= 1.02;
   LayerStack split;
   for (std::size_t i = 0; i < layers.fraction.size(); ++i) {
-    const double height = layers.fraction[i] * depth_mm;
-    const int pieces = std::max(1, static_cast<int>(std::ceil(height / (1.2 * edge_mm) - 1e-9)));
     LayerMaterial material = layers.material[i];
-    material.mass_kg /= pieces;
-    split.fraction.insert(split.fraction.end(), pieces, layers.fraction[i] / pieces);
-    split.material.insert(split.material.end(), pieces, material);
-    split.cut_from.insert(split.cut_from.end(), pieces, static_cast<int>(i));
+    material.mass_kg /= pieces[i];
+    split.fraction.insert(split.fraction.end(), pieces[i], layers.fraction[i] / pieces[i]);
+    split.material.insert(split.material.end(), pieces[i], material);
+    split.cut_from.insert(split.cut_from.end(), pieces[i], static_cast<int>(i));
   }
   return split;
 }

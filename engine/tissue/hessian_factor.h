@@ -19,7 +19,8 @@ namespace condyle {
 /// the mesh alone.
 class HessianFactor final : public Preconditioner {
  public:
-  /// nodes_per_column: 1 to 6.
+  static constexpr int most_per_column = 6;
+  /// nodes_per_column: 1 to most_per_column.
   HessianFactor(const SpringPrismMesh& mesh, const MeshLoads& loads, int nodes_per_column,
                 const Nodes& x, int threads = 1);
 

@@ -32,8 +32,9 @@ LayerStack default_layers(int count);
 
 /// The same layers, each cut into equal ones until none is thicker than 1.2 edges: springs cannot
 /// resist evenly in taller prisms (spring_map.h). Masses are shared out; cut_from tells the layer
-/// of `layers` that each is of. depth_mm: of the whole stack; edge_mm: of the mesh along it.
-LayerStack split_layers(const LayerStack& layers, double depth_mm, double edge_mm);
+/// of `layers` that each is of. depth_mm: of the whole stack; edge_mm: of the mesh along it;
+/// `most`: where more layers than these would result, they may be thicker.
+LayerStack split_layers(const LayerStack& layers, double depth_mm, double edge_mm, int most = 100);
 
 /// Node `sheet` (0 outermost) of column `column`.
 inline int node_of(int column, int sheet, int sheets) { return column * sheets + sheet; }

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "engine/core/error.h"
+#include "engine/tissue/hessian_factor.h"
 #include "engine/tissue/layered_mesh.h"
 #include "sim/tissue/anchors.h"
 #include "sim/tissue/attachment.h"
@@ -111,7 +112,7 @@ std::shared_ptr<TissueMesh> make_mesh(Build& build, TissueSummary& summary) {
   column_settings.finer = build.settings.surface_nodes / static_cast<double>(default_surface_nodes);
   build.layers = column_settings.finer > 1
                      ? split_layers(build.asked_layers, column_settings.default_depth_mm,
-                                    short_edge(skin.mesh))
+                                    short_edge(skin.mesh), HessianFactor::most_per_column - 1)
                      : build.asked_layers;
   if (build.layers.fraction.size() > build.asked_layers.fraction.size())
     summary.notes.push_back(fmt::format(

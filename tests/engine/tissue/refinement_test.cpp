@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "engine/math/pose.h"
 #include "engine/tissue/layered_mesh.h"
@@ -136,6 +137,11 @@ TEST(Refinement, LayersAreSplitOnlyWhereCellsWouldBeTall) {
   EXPECT_EQ(split.material.size(), split.fraction.size());
   EXPECT_EQ(split.material.front().modulus_MPa, layers.material.front().modulus_MPa);
   EXPECT_EQ(split.material.back().modulus_MPa, layers.material.back().modulus_MPa);
+  EXPECT_GT(split.fraction.size(), 5u);
+  const LayerStack few = split_layers(layers, 14, 2, 5);
+  EXPECT_EQ(few.fraction.size(), 5u);
+  EXPECT_NEAR(std::accumulate(few.fraction.begin(), few.fraction.end(), 0.0), 1, 1e-12);
+  EXPECT_EQ(split_layers(default_layers(5), 14, 0.5, 3).fraction.size(), 5u);
 }
 
 }  // namespace
