@@ -299,7 +299,10 @@ Motion motion_of(const std::string& spec, const Case& patient, const ContactMode
 
 }  // namespace
 
-bool motion_moves_upper_face(const std::string& spec) {
+bool motion_moves_upper_face(const std::string& name) {
+  // The motion that muscles follow keeps its expressions.
+  constexpr std::string_view inverse = "inverse:";
+  const std::string spec = name.starts_with(inverse) ? name.substr(inverse.size()) : name;
   const auto& names = builtin_motions();
   if (std::find(names.begin(), names.end(), spec) != names.end()) return false;
   const bool file = looks_like_a_file(spec);

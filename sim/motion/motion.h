@@ -81,9 +81,10 @@ struct MotionSettings {
 /// Names of the built-in motions.
 const std::vector<std::string>& builtin_motions();
 
-/// Whether expressions in its words move brows or forehead, see TissueSettings::upper_face. false
-/// for what is no motion in words. throws: InputError as make_motion() for wrong words.
-bool motion_moves_upper_face(const std::string& spec);
+/// Whether expressions in its words move brows or forehead, see TissueSettings::upper_face; also of
+/// a motion that muscles follow (inverse:MOTION). false for what is no motion in words. throws:
+/// InputError as make_motion() for wrong words.
+bool motion_moves_upper_face(const std::string& name);
 
 /// Checks what can be wrong with a motion without a patient: its name, words, file and settings.
 /// throws: InputError as make_motion().

@@ -101,6 +101,14 @@ TEST(Movements, ExpressionsExciteTheMusclesThatTheCaseBrings) {
     EXPECT_NEAR(excitation[m], muscles[m].kind == "risorius" ? 0.7 : 0, 1e-9) << muscles[m].name;
 }
 
+TEST(Movements, TheUpperFaceMovesByItsExpressionsAlone) {
+  EXPECT_TRUE(motion_moves_upper_face("open 10; surprise"));
+  EXPECT_TRUE(motion_moves_upper_face("inverse:AU4 0.5 left over 1"));
+  for (const char* others : {"smile; rest", "inverse:open 5; close", "inverse:opening", "opening",
+                             "muscles:nowhere.csv", "nowhere.csv"})
+    EXPECT_FALSE(motion_moves_upper_face(others)) << others;
+}
+
 TEST(Movements, AnExpressionLastsUntilRestAndTakesItsTime) {
   const Moved moved(expressive_jaw(), "smile 0.8 over 0.4; open 10 over 1; rest");
   EXPECT_LT(moved.incisor(0.4).norm(), 1e-9);
