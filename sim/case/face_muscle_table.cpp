@@ -108,7 +108,8 @@ FaceMusclePoint point_of(const TableRow& row) {
 /// Muscles in the order of their first rows.
 class FaceTableReader {
  public:
-  explicit FaceTableReader(const std::filesystem::path& file) : file_(file) {}
+  FaceTableReader(const std::filesystem::path& file, ZeroStrength zero)
+      : file_(file), zero_(zero) {}
 
   void add(const TableRow& row) {
     const std::string kind = kind_of(row);
@@ -152,7 +153,8 @@ class FaceTableReader {
   FaceMuscle& muscle_called(const std::string& name, const std::string& kind, const TableRow& row) {
     FaceMuscle muscle{.name = name, .kind = kind, .lines = {}};
     for (const char* column : {"max_force_N", "shortening"})
-      if (!row.text(column).empty() && !(row.number(column, 0, infinity) > 0))
+      if (zero_ == ZeroStrength::refused && !row.text(column).empty() &&
+          !(row.number(column, 0, infinity) > 0))
         row.refuse(column, "must be above 0; leave it empty for that of the muscle's kind");
     muscle.limit_N = row.number_or("max_force_N", 0, 0, strongest_face_N);
     muscle.shortening = row.number_or("shortening", 0, 0, most_shortening);
@@ -179,6 +181,7 @@ class FaceTableReader {
   }
 
   const std::filesystem::path& file_;
+  ZeroStrength zero_;
   std::vector<FaceMuscle> muscles_;
   std::set<std::pair<std::string, std::string>> fibres_;
   std::string last_name_, last_fibre_;
@@ -205,12 +208,12 @@ std::string face_muscle_side(const FaceMuscle& muscle) {
   return "both";
 }
 
-FaceMuscleTable read_face_muscles(const std::filesystem::path& file) {
+FaceMuscleTable read_face_muscles(const std::filesystem::path& file, ZeroStrength zero) {
   const std::string content = read_file(file, max_face_bytes);
   TextLines lines(content);
   if (!lines.next_filled()) throw InputError(file, "", "the file is empty");
   const auto columns = face_columns(file, lines);
-  FaceTableReader reader(file);
+  FaceTableReader reader(file, zero);
   for (std::size_t rows = 0; lines.next_filled(); ++rows) {
     if (rows == max_face_points)
       throw InputError(file, lines.where(), fmt::format("more than {} points", max_face_points));

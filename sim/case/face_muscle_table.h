@@ -21,8 +21,11 @@ struct FaceMuscleTable {
   std::vector<std::string> unused_columns = {};
 };
 
-/// throws: InputError with file, line, column and value.
-FaceMuscleTable read_face_muscles(const std::filesystem::path& file);
+/// `zero`: whether a force or shortening of 0 means that of the muscle's kind, as in saved cases of
+/// earlier versions. throws: InputError with file, line, column and value.
+enum class ZeroStrength { refused, of_the_kind };
+FaceMuscleTable read_face_muscles(const std::filesystem::path& file,
+                                  ZeroStrength zero = ZeroStrength::refused);
 
 /// The muscles as CSV text with exact round trip.
 std::string face_muscles_csv(const std::vector<FaceMuscle>& muscles);

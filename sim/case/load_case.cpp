@@ -299,7 +299,8 @@ Case load_case(const fs::path& given) {
   if (const auto muscles = root.find("muscles"))
     patient.muscles = read_muscles(inside(folder, *muscles), patient.notes);
   if (const auto muscles = root.find("face_muscles"))
-    patient.face_muscles = read_face_muscles(inside(folder, *muscles)).muscles;
+    patient.face_muscles =
+        read_face_muscles(inside(folder, *muscles), ZeroStrength::of_the_kind).muscles;
   if (const auto mechanics = root.find("mechanics"))
     patient.mechanics = read_mechanics(inside(folder, *mechanics));
   if (const auto rules = root.find("contact_pairs"))
