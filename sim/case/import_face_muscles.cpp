@@ -134,6 +134,11 @@ class FaceMuscleImport {
     bool turned = false;
     if (muscle.kind == "mentalis")  // from the bone forward
       turned = fibre.front().at.y() < fibre.back().at.y();
+    else if (muscle.kind.starts_with("frontalis"))  // down to the brow
+      turned = fibre.front().at.z() < fibre.back().at.z();
+    else if (pulls_upper_face(muscle.kind))  // from the bone to the skin
+      turned =
+          cranium_.nearest(fibre.front().at).distance > cranium_.nearest(fibre.back().at).distance;
     else if (const auto& to = end ? end : mouth; to)
       turned = (fibre.front().at - *to).norm() < (fibre.back().at - *to).norm();
     if (turned) std::reverse(fibre.begin(), fibre.end());
@@ -149,6 +154,10 @@ class FaceMuscleImport {
     }
     fibre.back().spread_mm = insertion_spread_mm;
     if (muscle.kind != "risorius") fix_origin(fibre, item);  // begins in fascia
+    if (muscle.kind == "orbicularis_oculi_superior") {       // from canthus to canthus
+      std::reverse(fibre.begin(), fibre.end());
+      fix_origin(fibre, item);
+    }
     note_crossing(fibre, item);
   }
 

@@ -62,6 +62,17 @@ TEST_F(FaceMuscleFiles, ATableReadsBackAsWritten) {
   EXPECT_EQ(face_muscles_csv(read_face_muscles(folder_.write("g.csv", text)).muscles), text);
 }
 
+TEST_F(FaceMuscleFiles, AStrengthOfZeroInASavedCaseIsThatOfTheKind) {
+  const auto file = folder_.write("f.csv", columns + more +
+                                               "\nzyg,left,1,0,52,-70,-6,cranium,,0,0,0,bounded\n"
+                                               "zyg,left,1,1,24,-90,-50,,0.5,5,0,0,bounded\n");
+  const auto table = read_face_muscles(file, ZeroStrength::of_the_kind);
+  ASSERT_EQ(table.muscles.size(), 1u);
+  EXPECT_EQ(table.muscles[0].limit_N, 0);
+  EXPECT_EQ(table.muscles[0].shortening, 0);
+  EXPECT_THROW(read_face_muscles(file), InputError);
+}
+
 TEST_F(FaceMuscleFiles, BadRowsAreRefusedByLineColumnAndValue) {
   expect_refused("", {"empty"});
   expect_refused("muscle,side,fibre,point,x_mm,y_mm\n", {"z_mm", "missing"});
@@ -135,6 +146,26 @@ TEST_F(FaceMuscleImports, EndsAreCompletedWhereTheFileDoesNotNameThem) {
   ASSERT_EQ(patient.face_muscles[1].lines.size(), 1u);
   EXPECT_EQ(patient.face_muscles[1].lines[0].front().at,
             patient.face_muscles[1].lines[0].back().at);
+}
+
+// The skull's front is at y = -50, the face's at -60.
+TEST_F(FaceMuscleImports, MusclesOfTheBrowsBeginOnTheBoneWhicheverEndComesFirst) {
+  const Case patient = import(
+      "COR,left,1,0,12,-58,50\nCOR,left,1,1,3,-50.5,40\n"
+      "FRM,left,1,0,20,-58,50\nFRM,left,1,1,20,-55,90\n"
+      "OCS,left,1,0,10,-51,40\nOCS,left,1,1,25,-58,52\nOCS,left,1,2,40,-51,40\n",
+      false);
+  const auto fibre = [&](const char* name) {
+    for (const FaceMuscle& muscle : patient.face_muscles)
+      if (muscle.name == name) return muscle.lines.front();
+    throw std::out_of_range(name);
+  };
+  EXPECT_EQ(fibre("left_corrugator").front().at, Vector3d(3, -50.5, 40));
+  EXPECT_EQ(fibre("left_corrugator").front().bone, cranium_body);
+  EXPECT_EQ(fibre("left_corrugator").back().bone, std::nullopt);
+  EXPECT_EQ(fibre("left_frontalis_medial").front().at.z(), 90);
+  EXPECT_EQ(fibre("left_orbicularis_oculi_superior").front().bone, cranium_body);
+  EXPECT_EQ(fibre("left_orbicularis_oculi_superior").back().bone, cranium_body);
 }
 
 bool has_muscle_note(const Case& patient, const std::string& words) {
