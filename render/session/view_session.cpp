@@ -323,8 +323,9 @@ void ViewSession::take_motion() {
   if (!moving_.done()) return;
   std::optional<std::shared_ptr<const SessionMotion>> made;
   state_.try_or_report("Cannot make this motion", [&] {
-    made = moving_.take();
-    motion_lifts_brows_ = made && motion_moves_upper_face((*made)->choice.spec);
+    auto taken = moving_.take();
+    motion_lifts_brows_ = taken && motion_moves_upper_face((*taken)->choice.spec);
+    made = std::move(taken);
   });
   if (!made) return keep_motion();
   preview_.restart();
@@ -369,14 +370,22 @@ void ViewSession::show_progress() {
   busy_with_ = recording_.active() ? "recording" : "";
 }
 
-/// Once sliders or the motion move brows or forehead, the soft tissue is built again with these.
+/// Once sliders or the motion move brows or forehead, the soft tissue is built again with these;
+/// after that was cancelled, only once they have been at rest.
 void ViewSession::extend_face(const ViewState& view) {
   bool& upper_face = state_.settings.simulator.tissue_model.upper_face;
-  const bool busy = loader_.job().active() || plan_.checking().active() ||
-                    plan_.colliding().active() || plan_.predicting().active();
-  if (upper_face || busy || !state_.patient || !state_.patient->scene.tissue) return;
-  if (!moves_upper_face(view.expression) && !(state_.motion && motion_lifts_brows_)) return;
+  if (loader_.job().active() || plan_.checking().active() || plan_.colliding().active() ||
+      plan_.predicting().active() || !state_.patient)
+    return;
+  const bool moves = moves_upper_face(view.expression) || (state_.motion && motion_lifts_brows_);
+  const bool cancelled = face_asked_for_ == state_.patient;
+  if (!moves && cancelled) {
+    upper_face = false;
+    face_asked_for_ = nullptr;
+  }
+  if (!moves || upper_face || !state_.patient->scene.tissue) return;
   upper_face = true;
+  face_asked_for_ = state_.patient;
   if (state_.patient->scene.plan)
     plan_.renew_face();
   else

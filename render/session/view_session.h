@@ -113,7 +113,8 @@ class ViewSession {
   PlanSession plan_;
   Job<std::shared_ptr<const SessionMotion>> moving_;
   bool motion_lifts_brows_ = false;  // the present motion, see TissueSettings::upper_face
-  Job<bool> readying_;               // bones to slide
+  std::shared_ptr<const SessionPatient> face_asked_for_;  // when the upper face was added
+  Job<bool> readying_;                                    // bones to slide
   Job<Saved> saving_;
   PreviewSession preview_;
   RecordingSession recording_;

@@ -36,13 +36,18 @@ std::shared_ptr<const SessionPatient> make_session_patient(Case patient,
                                                            const std::optional<Plan>& plan) {
   std::string trouble;
   const auto build = [&]() -> Scene {
-    try {
-      return make_scene(patient, plan, settings, progress);
-    } catch (const InputError& error) {
-      if (!settings.tissue) throw;
-      trouble = std::string("The soft tissue is left out. ") + error.what();
-      settings.tissue = false;
-      return make_scene(patient, plan, settings, progress);
+    while (true) {
+      try {
+        return make_scene(patient, plan, settings, progress);
+      } catch (const InputError& error) {
+        if (!settings.tissue) throw;
+        bool& upper_face = settings.tissue_model.upper_face;
+        trouble = upper_face ? "Brows and forehead are left out of the soft tissue. "
+                             : "The soft tissue is left out. ";
+        trouble += error.what();
+        settings.tissue = upper_face;
+        upper_face = false;
+      }
     }
   };
   Scene scene = build();
