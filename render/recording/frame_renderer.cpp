@@ -249,6 +249,8 @@ Image FrameRenderer::before_after(const View& view, const Camera& camera, const 
     images[i] = drawn(view.settings, camera,
                       moved ? shot : Shot{shot.renderer, shot.desk, rest_, still}, mapped);
     auto notes = plan_.annotations;
+    draw_labels(images[i], shot.desk.words, camera, (moved ? shot.overlays : still).labels,
+                plan_.settings.backdrop);
     if (i == 0) add_key(images[i], shot.desk.words, shot.overlays.key, plan_.settings.backdrop);
     if (mapped)
       keep_clear_of(notes,
