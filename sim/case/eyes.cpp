@@ -53,7 +53,11 @@ std::optional<Eyes> find_eyes(const TriMesh& face, const Landmarks& landmarks) {
       if (!right) right = opened[1];
     }
   }
-  if (!left || !right) return std::nullopt;
+  constexpr double narrowest_mm = 10;
+  const auto open = [&](const std::optional<Eye>& eye) {
+    return eye && std::abs(eye->outer.x() - eye->inner.x()) > narrowest_mm;
+  };
+  if (!open(left) || !open(right)) return std::nullopt;
   Eyes eyes{.left = *left, .right = *right};
   for (const auto& [side, eye] : {std::pair("left", &eyes.left), std::pair("right", &eyes.right)})
     eye->globe = landmarks.find(std::string(side) + "_eyeball")

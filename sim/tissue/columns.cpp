@@ -61,18 +61,19 @@ std::optional<double> to_globe(const Vector3d& from, const Vector3d& along, cons
 void march(const CoarseSkin& skin, const Bones& bones, const ColumnSettings& settings,
            std::size_t v, Column& column) {
   const Vector3d& p = skin.mesh.vertices[v];
+  const auto cranium = bones.cranium.empty()
+                           ? std::nullopt
+                           : bones.cranium.ray_cast(p, column.inward, settings.march_mm);
+  const double before_bone = cranium ? cranium->distance : settings.march_mm;
   if (skin.eyes)
     for (const Eye* eye : {&skin.eyes->left, &skin.eyes->right})
-      if (const auto met = to_globe(p, column.inward, eye->globe)) {
+      if (const auto met = to_globe(p, column.inward, eye->globe); met && *met < before_bone) {
         column.support = bones.jaw.upper_arch;
         column.met_globe = true;
         column.met_depth = *met;
         column.met_normal = (p + *met * column.inward - eye->globe).normalized();
         return;
       }
-  const auto cranium = bones.cranium.empty()
-                           ? std::nullopt
-                           : bones.cranium.ray_cast(p, column.inward, settings.march_mm);
   const auto mandible = bones.mandible.empty()
                             ? std::nullopt
                             : bones.mandible.ray_cast(p, column.inward, settings.march_mm);

@@ -67,6 +67,10 @@ TEST(Eyes, AreFoundByTheirOpenings) {
   EXPECT_GT(opened->left.outer.x(), opened->left.inner.x());
   EXPECT_LT(opened->right.outer.x(), opened->right.inner.x());
   EXPECT_FALSE(find_eyes(test::cuboid({-70, -60, -80}, {70, 70, 110}), {}));
+  Landmarks one_place = patient.landmarks;
+  for (const char* canthus : {"left_endocanthion", "left_exocanthion"})
+    one_place.points[canthus] = Vector3d(30, -80, 14);
+  EXPECT_FALSE(find_eyes(mesh, one_place));
 }
 
 // Source of the ranges: Vicon measurements, see expression_findings.cpp.
