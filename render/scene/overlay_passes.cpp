@@ -168,9 +168,9 @@ void OverlayPasses::caps(std::span<const DrawItem> items, const PictureView& vie
     });
     if (!hollow) continue;
     for (const SectionSolid& solid : within) {
-      const bool moves = solid.with_tongue && tongue != items.end();
-      cap(*item, moves ? tongue->model : Eigen::Matrix4f(Eigen::Matrix4f::Identity()), solid.color,
-          view, [&] { solid.mesh.draw(); });
+      if (solid.with_tongue && tongue == items.end()) continue;  // hidden
+      cap(*item, solid.with_tongue ? tongue->model : Eigen::Matrix4f(Eigen::Matrix4f::Identity()),
+          solid.color, view, [&] { solid.mesh.draw(); });
     }
   }
   glDepthFunc(GL_LESS);
