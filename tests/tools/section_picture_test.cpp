@@ -28,7 +28,8 @@ TEST(Record, ASectionThroughTheOpenMouthIsHollowBetweenPalateAndTongue) {
       }
     return static_cast<double>(flesh) / all;
   };
-  EXPECT_GT(throat[0], throat[1] + 40);                 // red
+  EXPECT_LT(throat[0], throat[2] + 30);                 // a neutral colour
+  EXPECT_LT(open.at(0.465, 0.82)[0], 20);               // the airway below the larynx
   EXPECT_LT(flesh_in(0.395, 0.45, 0.51, 0.57), 0.02);   // between palate and tongue
   EXPECT_LT(flesh_in(0.385, 0.395, 0.56, 0.62), 0.02);  // and behind the lips
   EXPECT_GT(flesh_in(0.52, 0.6, 0.55, 0.85), 0.99);     // throat and neck
