@@ -57,5 +57,34 @@ TEST_F(WindowSession, SlidersMoveTheLiveFaceAndAreSavedWithTheSession) {
   EXPECT_EQ(wait_for_end(), 0);
 }
 
+TEST_F(WindowSession, ABrowSliderAddsTheUpperFaceToTheSoftTissue) {
+  start({"--motion", "rest"});
+  ASSERT_TRUE(wait_until(idle, 120));
+  EXPECT_TRUE(press("a"));
+  click("tab:Face");
+  ASSERT_TRUE(wait_for_item("expression:surprise:right"));
+  ASSERT_TRUE(wait_until([](const Json& s) {
+    return double(s["camera_direction"][1]) < -0.9999 && s["picture_finished"] == true;
+  }));
+  see("at-rest");
+  const auto slide = [&](double from, double to) {
+    const auto r = rect("expression:surprise:right");
+    drag(r[0] + from * r[2], r[1] + r[3] / 2, r[0] + to * r[2], r[1] + r[3] / 2);
+  };
+  slide(0.03, 0.3);  // the soft tissue is built again
+  ASSERT_TRUE(wait_until(
+      [](const Json& s) { return idle(s) && double(s["frame"]["excitation"]) > 0; }, 120))
+      << state().value("trouble", "");
+  const double reached = state()["edits"]["expression"]["surprise"][0];
+  slide(0.03 + 0.94 * reached, 0.97);
+  ASSERT_TRUE(wait_until([](const Json& s) { return double(s["frame"]["excitation"]) > 3; }, 60))
+      << state()["edits"]["expression"].dump();
+  ASSERT_TRUE(wait_until([](const Json& s) { return s["picture_finished"] == true; }, 60));
+  EXPECT_GT(see("surprise"), 0.003);
+  EXPECT_EQ(state().value("trouble", ""), "");
+  EXPECT_TRUE(press("ctrl+q"));
+  EXPECT_EQ(wait_for_end(), 0);
+}
+
 }  // namespace
 }  // namespace condyle::test
