@@ -3,10 +3,11 @@
 #include "render/face/skin_folds.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "render/face/mouth_lining.h"
 #include "render/mesh/vertex_normals.h"
-#include "tests/render/scene_fixture.h"
+#include "tests/render/face/slit_head.h"
 
 namespace condyle {
 namespace {
@@ -20,13 +21,7 @@ std::vector<Part> head_with_nose() {
     const double across = p.x() / 9, up = (p.z() - 26) / 9;
     if (p.y() < 0) p.y() -= 18 * std::exp(-across * across - up * up);
   }
-  std::erase_if(face.triangles, [&](const Eigen::Vector3i& t) {
-    const Eigen::Vector3d p = (face.vertices[t[0]] + face.vertices[t[1]] + face.vertices[t[2]]) / 3;
-    return p.y() < 0 && std::hypot(p.x() / 25, p.z() / 3) < 1;
-  });
-  return {make_part("face", Role::face, face),
-          make_part("upper_teeth", Role::upper_teeth, ball({0, -38, 6}, 16, 16)),
-          make_part("lower_teeth", Role::lower_teeth, ball({0, -38, -6}, 16, 16))};
+  return head_with_slit(std::move(face));
 }
 
 /// The face of that head and its folds.

@@ -3,29 +3,17 @@
 
 #include "render/face/drawn_face.h"
 #include "render/face/mouth_lining.h"
-#include "tests/render/scene_fixture.h"
+#include "tests/render/face/slit_head.h"
 
 namespace condyle {
 namespace {
 
 const Eigen::Vector3f skin = {.83f, .65f, .55f};
 
-/// A round head with a slit of 50 mm for a mouth, and a ball for each jaw's teeth.
-std::vector<Part> head_with_slit() {
-  TriMesh face = ball({0, 0, 0}, 60, 90);
-  std::erase_if(face.triangles, [&](const Eigen::Vector3i& t) {
-    const Eigen::Vector3d p = (face.vertices[t[0]] + face.vertices[t[1]] + face.vertices[t[2]]) / 3;
-    return p.y() < 0 && std::hypot(p.x() / 25, p.z() / 3) < 1;
-  });
-  return {make_part("face", Role::face, face),
-          make_part("upper_teeth", Role::upper_teeth, ball({0, -38, 6}, 16, 16)),
-          make_part("lower_teeth", Role::lower_teeth, ball({0, -38, -6}, 16, 16))};
-}
-
 float redness(const Eigen::Vector3f& color) { return (color.x() - color.y()) / color.x(); }
 
 TEST(SkinTint, IsTheRedOfLipsAboutTheMouthAndOfSkinElsewhere) {
-  const auto parts = head_with_slit();
+  const auto parts = head_with_slit(ball({0, 0, 0}, 60, 90));
   const TriMesh& face = parts[0].mesh;
   const auto lining = line_mouth(parts);
   ASSERT_TRUE(lining);
@@ -52,7 +40,7 @@ TEST(SkinTint, IsTheRedOfLipsAboutTheMouthAndOfSkinElsewhere) {
 }
 
 TEST(SkinTint, IsNotGivenToAFaceThatHasColoursOfItsOwn) {
-  auto parts = head_with_slit();
+  auto parts = head_with_slit(ball({0, 0, 0}, 60, 90));
   const auto reddest = [&] {
     const PreparedParts prepared(parts);
     float most = 0;
