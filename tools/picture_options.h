@@ -28,6 +28,7 @@ struct PictureOptions {
   int supersample = 1;
   bool shadows = true;
   bool folds = true;
+  bool life = false;
 };
 
 /// The groups "Camera" and "Look".

@@ -179,6 +179,13 @@ PicturePlan parse(const PictureOptions& options, const Case* patient) {
     plan.before_after = true;
     plan.map = SurfaceMap::displacement;
   }
+  if (options.life) {
+    if (plan.map != SurfaceMap::none || plan.patches || plan.wipe)
+      throw InputError(
+          "--life: is for looks alone; leave --wipe, --before-after, --overlay patches, "
+          "--show distance and --show displacement out");
+    settings.life = life_about(patient ? middle_of_joints(*patient) : Vector3d(0, 0, 0));
+  }
   plan.words = {{"show", options.show},
                 {"distances", plan.map == SurfaceMap::distance
                                   ? fmt::format("up to {} mm", options.distance_near_mm)
@@ -212,6 +219,7 @@ std::string describe(const PictureOptions& o) {
   if (o.light) text += "; light";
   if (o.transparent) text += "; transparent";
   if (!o.folds) text += "; no folds";
+  if (o.life) text += "; life";
   return text;
 }
 

@@ -10,6 +10,7 @@
 #include "engine/core/files.h"
 #include "render/recording/frame_renderer.h"
 #include "render/recording/recording_identity.h"
+#include "render/scene/face_shape.h"
 #include "sim/operated/state_before.h"
 #include "sim/report/expression_report.h"
 #include "sim/report/motion_plots.h"
@@ -59,11 +60,13 @@ FrameTimes frame_times(const RecordOptions& options, double duration_s) {
   return {options.frames > 0 ? options.frames : static_cast<int>(rounded), duration_s};
 }
 
-/// The report with the metadata of its pictures.
-std::string with_pictures(const std::string& report, const RenderMetadata& facts) {
+/// The report with the metadata of its pictures. life: a note about it; empty for none.
+std::string with_pictures(const std::string& report, const RenderMetadata& facts,
+                          const std::string& life) {
   auto json = nlohmann::ordered_json::parse(report);
   json["pictures"] = {
       {"driver", facts.driver}, {"samples_asked", facts.samples_asked}, {"samples", facts.samples}};
+  if (!life.empty()) json["pictures"]["life"] = life;
   return json.dump(2) + "\n";
 }
 
@@ -177,7 +180,9 @@ int run_record(const RecordOptions& options, const CommonOptions& common) {
   const ExpressionMeasures expression = report.expression();
   if (!expression.findings.empty())
     json = with_expression(json, options.out, expression, before ? &*before : nullptr);
-  if (pictures) json = with_pictures(json, pictures->facts());
+  const std::string life =
+      plan && plan->settings.life ? life_note(scene.patient.parts, plan->settings) : "";
+  if (pictures) json = with_pictures(json, pictures->facts(), life);
   write_file(options.out / "report.json", json);
   if (motion.muscles) write_file(options.out / "excitations.csv", excitations_csv(motion));
   if (options.plots) {
@@ -188,6 +193,7 @@ int run_record(const RecordOptions& options, const CommonOptions& common) {
   if (common.json) fmt::print("{}", json);
   if (common.prints_summary()) {
     for (const auto& note : motion.notes) fmt::print(stderr, "note: {}\n", note);
+    if (!life.empty()) fmt::print(stderr, "note: {}\n", life);
     if (!not_before.empty()) fmt::print(stderr, "note: {}\n", not_before);
     if (const auto lacks = pictures ? pictures->facts().shortfall() : ""; !lacks.empty())
       fmt::print(stderr, "note: {}; --edges fxaa or --supersample 2 smooth them\n", lacks);

@@ -14,6 +14,7 @@
 #include "render/recording/caption.h"
 #include "render/recording/facial_bellies.h"
 #include "render/recording/muscle_looks.h"
+#include "render/scene/face_shape.h"
 #include "sim/muscles/default_muscles.h"
 #include "sim/tissue/model.h"
 
@@ -264,7 +265,12 @@ Image FrameRenderer::before_after(const View& view, const Camera& camera, const 
 Image FrameRenderer::finished(const View& view, int frame, const Shot& shot) const {
   const double fraction =
       subject_.frames > 1 ? static_cast<double>(frame) / (subject_.frames - 1) : 0;
-  const Camera camera = view.camera.at(fraction, shot.state);
+  Camera camera = view.camera.at(fraction, shot.state);
+  if (const auto& parts = subject_.scene.patient.parts; shows_life(parts, view.settings)) {
+    const Pose X_CM = shot.state.poses[lower_jaw_of(parts)];
+    camera = seeing_extension(camera, *view.settings.life,
+                              life_signs(shot.state.time_s, X_CM).extension);
+  }
   auto notes = plan_.annotations;
   notes.caption = caption_lines(plan_.caption, frame, shot.state, subject_.motion.name);
   Image image;

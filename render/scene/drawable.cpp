@@ -245,10 +245,12 @@ const GpuMesh& Drawable::rest_mesh() {
   return *at_rest;
 }
 
-void Drawable::move_face(std::vector<Eigen::Vector3f> positions, bool folded,
+void Drawable::move_face(std::vector<Eigen::Vector3f> positions, const FaceLook& look,
                          std::vector<Eigen::Vector3f>& normals_scratch) {
   even_rim(positions, uneven);
-  const auto shades = folds && folded ? folds->apply(positions) : std::vector<SkinFolds::Shade>{};
+  const auto shades =
+      folds && look.folded ? folds->apply(positions) : std::vector<SkinFolds::Shade>{};
+  if (look.alive) look.alive(positions);
   vertex_normals(positions, triangles(), normals_scratch);
   mesh.send_shape(positions, normals_scratch);
   auto now = colors;

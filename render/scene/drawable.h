@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -53,9 +54,13 @@ struct Drawable {
   /// The part at rest.
   const GpuMesh& rest_mesh();
 
-  /// Sends a deformed face, its normals and the shade of its creases; `folded`: with the folds of
-  /// its skin.
-  void move_face(std::vector<Eigen::Vector3f> positions, bool folded,
+  /// Changes of a face's shape in pictures alone.
+  struct FaceLook {
+    bool folded = true;                                          // with the folds of its skin
+    std::function<void(std::span<Eigen::Vector3f>)> alive = {};  // moves its vertices
+  };
+  /// Sends a deformed face, its normals and the shade of its creases.
+  void move_face(std::vector<Eigen::Vector3f> positions, const FaceLook& look,
                  std::vector<Eigen::Vector3f>& normals_scratch);
 };
 

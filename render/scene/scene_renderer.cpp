@@ -11,6 +11,7 @@
 #include "render/face/hide_protruding_bone.h"
 #include "render/face/lashes.h"
 #include "render/scene/drawable.h"
+#include "render/scene/face_shape.h"
 #include "render/scene/overlay_passes.h"
 #include "render/scene/passes.h"
 #include "render/scene/picture_target.h"
@@ -19,7 +20,7 @@
 namespace condyle {
 namespace {
 
-constexpr double nearly_opaque = 0.999, nearly_hidden = 0.004;
+constexpr double nearly_hidden = 0.004;
 constexpr float opening_room_mm = 45;  // margin below the box at rest, for an open mouth
 
 Eigen::Matrix4f matrix_of(const Pose& pose) {
@@ -76,9 +77,8 @@ struct SceneRenderer::State {
   Pose X_CM;                    // of the lower jaw
   Eigen::AlignedBox3f reached;  // `box` and the present boxes of other bodies
   bool face_moved = false;
-  std::vector<Eigen::Vector3f> face_places;  // of the first face, without folds
-  std::optional<bool> sent_folds;            // with which they were sent; none: not yet
-  std::vector<Eigen::Vector3f> normals;      // reused between frames
+  double time_s = 0;
+  FaceShape face_shape;
   std::vector<Eigen::Vector3f> contact_points;
   PictureTarget target;
   float map_low = 0, map_high = 1;  // values are clamped to this range
@@ -99,8 +99,6 @@ struct SceneRenderer::State {
   std::span<Drawable> present() { return std::span(drawables).first(parts.size()); }
   void place(const BodyPoses& at);
   Drawable* first_face();
-  void place_face(std::vector<Eigen::Vector3f> places);
-  void send_face(const PictureSettings& settings);
   /// The part whose opacity a drawable has; null where it is not there.
   const std::string* shown_as(std::size_t drawable, bool before) const;
 
@@ -217,17 +215,6 @@ Drawable* SceneRenderer::State::first_face() {
     return drawable.part->role == Role::face;
   });
   return face == drawables.end() ? nullptr : &*face;
-}
-
-void SceneRenderer::State::place_face(std::vector<Eigen::Vector3f> places) {
-  face_places = std::move(places);
-  sent_folds.reset();
-}
-
-void SceneRenderer::State::send_face(const PictureSettings& settings) {
-  if (face_places.empty() || sent_folds == settings.folds) return;
-  first_face()->move_face(face_places, settings.folds, normals);
-  sent_folds = settings.folds;
 }
 
 /// Distance of the jaw from the pose of its baked shade: 1 there, 0 far off, and where either jaw
@@ -348,17 +335,16 @@ std::pair<Eigen::Vector3d, Eigen::Vector3d> SceneRenderer::bounds() const {
 
 void SceneRenderer::update(const FrameState& frame) {
   auto& s = *state_;
+  s.time_s = frame.time_s;
   s.place(frame.poses);
   if (const Drawable* face = s.first_face()) {
     const auto& rest = face->part->mesh.vertices;
     const DrawnFace* other = s.patient->face_of(*face->part);
     const bool moved = frame.face.size() == (other ? other->given() : rest.size());
     if (moved) {
-      s.place_face(other ? other->places(frame.face) : frame.face);
+      s.face_shape.place(other ? other->places(frame.face) : frame.face);
     } else if (s.face_moved) {
-      std::vector<Eigen::Vector3f> positions;
-      for (const auto& v : rest) positions.push_back(v.cast<float>());
-      s.place_face(std::move(positions));
+      s.face_shape.place(float_positions(face->part->mesh));
     }
     s.face_moved = moved;
   }
@@ -415,7 +401,7 @@ void SceneRenderer::set_body(const std::string& name, const FibreBody& body) {
 
 DrawnBox SceneRenderer::drawn_box(const Camera& camera, const PictureSettings& settings) const {
   auto& s = *state_;
-  s.send_face(settings);
+  s.face_shape.send(s.parts, s.present(), settings, s.time_s, s.X_CM);
   const auto items = s.items(settings);
   const auto view = s.view(camera, settings, items);
   PictureBounds bounds(settings.width, settings.height, view.view_projection);
@@ -433,7 +419,7 @@ DrawnBox SceneRenderer::drawn_box(const Camera& camera, const PictureSettings& s
 void SceneRenderer::draw(const Camera& camera, const PictureSettings& settings,
                          const std::optional<DrawnBox>& within) {
   auto& s = *state_;
-  s.send_face(settings);
+  s.face_shape.send(s.parts, s.present(), settings, s.time_s, s.X_CM);
   GLint target = 0;
   glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &target);
   const auto items = s.items(settings);

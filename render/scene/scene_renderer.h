@@ -13,6 +13,7 @@
 #include "render/image/colour_map.h"
 #include "render/image/drawn_box.h"
 #include "render/image/image.h"
+#include "render/life/life_signs.h"
 #include "render/overlay/overlays.h"
 #include "sim/frame/before_operation.h"
 #include "sim/frame/frame_state.h"
@@ -25,9 +26,12 @@ struct PictureSettings {
   int width = 1280, height = 720;
   int samples = 4;  // of multisampling; limited by the context
   bool shadows = true;
-  bool coarse = false;            // shapes within 0.2 mm, for fast pictures
-  bool contacts = true;           // mark contact points
-  bool folds = true;              // of compressed skin: see skin_folds.h
+  bool coarse = false;   // shapes within 0.2 mm, for fast pictures
+  bool contacts = true;  // mark contact points
+  bool folds = true;     // of compressed skin: see skin_folds.h
+  /// Signs of life at the frame's time, where shows_life. The camera must be that of
+  /// seeing_extension.
+  std::optional<Life> life = {};
   bool before_operation = false;  // with the parts that an operation removed, without its grafts
   Backdrop backdrop = Backdrop::dark;
   bool transparent = false;                    // no backdrop

@@ -14,6 +14,7 @@
 #include "render/recording/caption.h"
 #include "render/recording/frame_renderer.h"
 #include "render/recording/recording_identity.h"
+#include "render/scene/face_shape.h"
 #include "render/session/view_overlays.h"
 #include "sim/muscles/expression_names.h"
 #include "sim/session/background_work.h"
@@ -65,13 +66,14 @@ std::uint64_t shown_hash(const ViewRecording& subject, const PicturePlan& plan) 
   };
   Json shown;
   // Complete: a new field does not compile until it is added here.
-  const auto& [width, height, samples, shadows, coarse, contacts, folds, before_operation, backdrop,
-               transparent, skin_opacity, part_opacity, clip, cut_away, ghost, wireframe,
+  const auto& [width, height, samples, shadows, coarse, contacts, folds, life, before_operation,
+               backdrop, transparent, skin_opacity, part_opacity, clip, cut_away, ghost, wireframe,
                mapped_up_to, from_x, to_x, smooth_edges, supersampling] = plan.settings;
   shown["picture"] = {
       {samples, shadows, coarse, contacts, folds, before_operation, backdrop, transparent,
        skin_opacity, from_x, to_x},
       {smooth_edges, supersampling, part_opacity, wireframe, mapped_up_to.value_or(-1)}};
+  if (life) shown["life"] = list(life->nodding_axis);
   if (clip) shown["clip"] = {list(clip->point), list(clip->normal), clip->capped, clip->parts};
   if (cut_away) shown["cut"] = {list(cut_away->center), cut_away->radius_mm, cut_away->parts};
   if (ghost) shown["ghost"] = {ghost->parts, ghost->opacity, list(ghost->color)};
@@ -158,8 +160,10 @@ std::string draw(const PicturePlan& plan, const RecordingFiles& files, const Rec
   report(progress, files.film ? "making the film" : "writing the last pictures", 1);
   pictures.finish();
   const auto made = files.film && plan.cameras.size() == 1 ? files.out / "film.mp4" : files.out;
-  const std::string lacks = pictures.facts().shortfall();
-  return "Recorded " + made.string() + (lacks.empty() ? "" : " (" + lacks + ")");
+  std::string notes = pictures.facts().shortfall();
+  if (shows_life(of.scene.patient.parts, plan.settings))
+    notes += std::string(notes.empty() ? "" : "; ") + "with life, look only";
+  return "Recorded " + made.string() + (notes.empty() ? "" : " (" + notes + ")");
 }
 
 /// The differences in readable words.

@@ -27,7 +27,7 @@ nlohmann::json edits_of(const ViewState& view) {
   // Complete: a new field of Look does not compile until it is added here.
   const auto& [clip, clip_skin, clip_from, clip_fraction, cut_away, cut_at, cut_radius_mm, ghost,
                wireframe, patches, paths, axes, springs, prisms, bone_springs, displacement,
-               facial_muscles, muscle_labels, scale_bar, side_letters, folds, wipe, wipe_at,
+               facial_muscles, muscle_labels, scale_bar, side_letters, folds, life, wipe, wipe_at,
                mirrored] = view.look;
   return {{"clip", clip},
           {"clip_from", std::string(1, clip_from)},
@@ -54,6 +54,7 @@ nlohmann::json edits_of(const ViewState& view) {
           {"scale_bar", scale_bar},
           {"letters", side_letters},
           {"folds", folds},
+          {"life", life},
           {"shadows", view.shadows},
           {"mark_contacts", view.mark_contacts},
           {"obey_contact", view.obey_contact},

@@ -255,6 +255,7 @@ std::vector<Request> Window::take_requests() {
   for (Request& one : requests)
     if (auto* record = std::get_if<request::Record>(&one)) {
       record->picture = s.settings();
+      record->camera = s.without_extension();
       const Pose X_RC = s.view.hands.X_RC(s.frame() ? s.frame()->poses[s.view.hands.jaw] : Pose{});
       record->upright = X_RC.R.conjugate() * Eigen::Vector3d::UnitZ();
       if (s.view.look.wipe) {

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <string_view>
 
+#include "render/scene/face_shape.h"
 #include "render/window/input/picking.h"
 #include "render/window/panels/panels_drawing.h"
 #include "render/window/window_state.h"
@@ -29,7 +30,8 @@ bool same(const Camera& a, const Camera& b) {
 }
 bool same(const PictureSettings& a, const PictureSettings& b) {
   return a.width == b.width && a.height == b.height && a.shadows == b.shadows &&
-         a.folds == b.folds && a.contacts == b.contacts && a.backdrop == b.backdrop && a.skin_opacity == b.skin_opacity &&
+         a.folds == b.folds && a.life == b.life && a.contacts == b.contacts &&
+         a.backdrop == b.backdrop && a.skin_opacity == b.skin_opacity &&
          a.part_opacity == b.part_opacity;
 }
 
@@ -46,10 +48,31 @@ ViewRect Window::State::view_rect() const {
   return panels->layout(w, h, view).view;
 }
 
-/// The camera in the cranium's frame, in which everything is drawn.
-Camera Window::State::seen() const {
+/// The camera in the cranium's frame, without the head's extension.
+Camera Window::State::without_extension() const {
   return expressed_in(view.hands.X_RC(frame() ? frame()->poses[view.hands.jaw] : Pose{}).inverse(),
                       camera);
+}
+
+/// The camera in the cranium's frame, in which everything is drawn.
+Camera Window::State::seen() const {
+  const Camera still = without_extension();
+  if (!view.look.life || !frame()) return still;
+  const PictureSettings shown = settings();
+  if (!shows_life(scene.parts, shown)) return still;
+  const Pose X_CM = frame()->poses[lower_jaw_of(scene.parts)];
+  return seeing_extension(still, *shown.life, life_signs(frame()->time_s, X_CM).extension);
+}
+
+/// Life needs pictures that compare nothing.
+std::optional<Life> Window::State::life() const {
+  const Look& look = view.look;
+  if (!look.life || look.wipe || look.displacement || view.distances) return std::nullopt;
+  Eigen::AlignedBox3d joints;
+  for (const Landmark& landmark : view.landmarks)
+    if (landmark.name == "left_condyle" || landmark.name == "right_condyle")
+      joints.extend(landmark.at_rest);
+  return life_about(joints.isEmpty() ? box.center() : joints.center());
 }
 
 PictureSettings Window::State::settings() const {
@@ -62,6 +85,7 @@ PictureSettings Window::State::settings() const {
   picture_settings.height = std::max(1, static_cast<int>(std::lround(rect.height * density)));
   picture_settings.shadows = view.shadows;
   picture_settings.folds = view.look.folds;
+  picture_settings.life = life();
   picture_settings.contacts = view.mark_contacts;
   picture_settings.backdrop = arrangement.light ? Backdrop::light : Backdrop::dark;
   picture_settings.skin_opacity = view.skin_opacity;

@@ -234,6 +234,8 @@ struct Window::State {
   std::pair<int, int> size() const;
   ViewRect view_rect() const;
   Camera seen() const;
+  Camera without_extension() const;
+  std::optional<Life> life() const;
   PictureSettings settings() const;
   void apply_look(PictureSettings& picture_settings) const;
   bool drawn() const;  // the displayed picture is of this scene

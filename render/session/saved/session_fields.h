@@ -40,8 +40,8 @@ void look_fields(Visit& visit, AnyLook& look) {
   // Complete: a new field does not compile until it is added here.
   auto& [clip, clip_skin, clip_from, clip_fraction, cut_away, cut_at, cut_radius_mm, ghost,
          wireframe, patches, paths, axes, springs, prisms, bone_springs, displacement,
-         facial_muscles, muscle_labels, scale_bar, side_letters, folds, wipe, wipe_at, mirrored] =
-      look;
+         facial_muscles, muscle_labels, scale_bar, side_letters, folds, life, wipe, wipe_at,
+         mirrored] = look;
   visit.flag("clip", clip);
   visit.flag("clip_skin", clip_skin);
   visit.letter("clip_from", clip_from, "LRAPSI");
@@ -63,6 +63,7 @@ void look_fields(Visit& visit, AnyLook& look) {
   visit.flag("scale_bar", scale_bar);
   visit.flag("letters", side_letters);
   visit.flag("folds", folds);
+  visit.flag("life", life);
   visit.flag("wipe", wipe);
   visit.number("wipe_at", wipe_at, 0, 1);
   visit.text("mirrored", mirrored);

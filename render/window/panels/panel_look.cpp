@@ -133,6 +133,10 @@ void Panels::Drawing::look_overlays() {
   tick_box(pen, "shadows", "Shadows", view.shadows);
   tick_box(pen, "folds", "Folds of the skin", look.folds);
   tooltip(pen, "Where the skin is compressed; in the picture alone, not in measures or exports");
+  tick_box(pen, "life", "Life (look only)", look.life);
+  tooltip(pen,
+          "An opaque face blinks, looks about and breathes while the motion plays, and the head "
+          "extends as the jaw opens; in the picture alone, never in measures or exports");
 }
 
 void Panels::Drawing::look_distances() {

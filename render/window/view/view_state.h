@@ -107,6 +107,7 @@ struct Look {
   bool muscle_labels = true;    // names of the muscles that are shown
   bool scale_bar = true, letters = true;
   bool folds = true;          // of compressed skin, in pictures alone
+  bool life = false;          // blinks, gaze, breathing, nodding of the face, in pictures alone
   bool wipe = false;          // the kept state at the left, the present one at the right
   double wipe_at = 0.5;       // fraction of the width
   std::string mirrored = {};  // part whose mirror image is shown; empty: none

@@ -53,11 +53,11 @@ struct SavedScene : testing::Test {
     // Complete: a new field does not compile until it is changed here.
     auto& [clip, clip_skin, clip_from, clip_fraction, cut_away, cut_at, cut_radius_mm, ghost,
            wireframe, patches, paths, axes, springs, prisms, bone_springs, displacement,
-           facial_muscles, muscle_labels, scale_bar, side_letters, folds, wipe, wipe_at, mirrored] =
-        view.look;
+           facial_muscles, muscle_labels, scale_bar, side_letters, folds, life, wipe, wipe_at,
+           mirrored] = view.look;
     for (bool* flag : {&clip, &clip_skin, &cut_away, &ghost, &wireframe, &patches, &paths, &axes,
                        &springs, &prisms, &bone_springs, &displacement, &facial_muscles,
-                       &muscle_labels, &scale_bar, &side_letters, &folds, &wipe})
+                       &muscle_labels, &scale_bar, &side_letters, &folds, &life, &wipe})
       *flag = !*flag;
     clip_from = 'S';
     clip_fraction = 1.0 / 3;

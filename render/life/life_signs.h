@@ -1,0 +1,48 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "engine/math/pose.h"
+#include "render/camera/camera.h"
+
+namespace condyle {
+
+/// Switches life on in a picture.
+struct Life {
+  /// A point of the transverse axis about which the head nods: between the atlanto-occipital
+  /// joints, mm.
+  Eigen::Vector3d nodding_axis = Eigen::Vector3d::Zero();
+  bool operator==(const Life&) const = default;
+};
+
+/// Nodding axis by the midpoint of the condyles of the mandible; source: average adult.
+Life life_about(const Eigen::Vector3d& condyles);
+
+/// What a face does by itself. Values between published extremes; the choice at each time is
+/// pseudo-random.
+struct LifeSigns {
+  double closure = 0;    // of the upper lids by a blink: 0 open, 1 closed
+  double gaze_left = 0;  // to the patient's left, rad
+  double gaze_up = 0;    // rad
+  double pupil = 1;      // radius over that at rest
+  double breath = 0;     // 0 after expiration, 1 after inspiration
+  double extension = 0;  // of the head with the jaw's opening, rad
+  bool operator==(const LifeSigns&) const = default;
+};
+
+/// A function of its arguments alone. X_CM: pose of the lower jaw.
+/// Blinks every 3 to 5 s, the first before 2 s, the lids closing in 0.1 s and opening in 0.2 s;
+/// saccades of up to 9 degrees; 13.5 breaths a minute; the head extends by a tenth of the jaw's
+/// rotation.
+/// source: closing is faster than opening by 40 to 47 %: Sforza 2008; that the head extends as the
+/// jaw opens: Eriksson 2000, Zafar 2000. The tenth was chosen.
+LifeSigns life_signs(double time_s, const Pose& X_CM = {});
+
+/// Pose in the cranium's frame of what stays where it is while the head extends.
+Pose still_in_cranium(const Life& life, double extension);
+
+/// The camera that sees the head extend, in the cranium's frame.
+Camera seeing_extension(const Camera& camera, const Life& life, double extension);
+
+}  // namespace condyle

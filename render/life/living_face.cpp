@@ -1,0 +1,108 @@
+#include "render/life/living_face.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/math/smooth_step.h"
+
+namespace condyle {
+namespace {
+
+using Eigen::Vector3f;
+
+constexpr float below_jaw_mm = 6, shortest_neck_mm = 30;
+const Vector3f shoulders_breathe(0, -0.4f, 1.2f), notch_breathes(0, -1.2f, 0.5f);  // mm
+constexpr float nostril_breathes_mm = 0.35f, nostril_mm = 6;
+const Vector3f ala_from_tip(16, 16, -5);  // source: average adult
+
+float smooth(float t) { return static_cast<float>(smooth_step(t)); }
+
+}  // namespace
+
+LivingFace::LivingFace(std::span<const Part> parts, std::span<const Vector3f> rest,
+                       std::span<const Eigen::Vector3i> triangles) {
+  eyes_.resize(parts.size());
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (parts[i].role != Role::eyes) continue;
+    LivingEyes eyes(parts[i].mesh);
+    for (std::size_t e = 0; e < eyes.eyeballs().size(); ++e)
+      if (auto lid = UpperLid::find(rest, triangles, eyes.eyeballs()[e])) {
+        lids_.push_back(std::move(*lid));
+        lid_eyes_.emplace_back(i, e);
+      }
+    eyeballs_ += eyes.eyeballs().size();
+    if (!eyes.eyeballs().empty()) eyes_[i] = std::move(eyes);
+  }
+  for (auto& eyes : eyes_)
+    if (eyes) eyes->grow_from(lids_);
+  find_neck(parts, rest);
+  find_nostrils(rest);
+}
+
+/// The skin below the jaw, down to its end, which stays with the trunk.
+void LivingFace::find_neck(std::span<const Part> parts, std::span<const Vector3f> rest) {
+  float jaw = std::numeric_limits<float>::infinity(), end = jaw;
+  for (const Part& part : parts)
+    if (collides(part.role))
+      for (const auto& p : part.mesh.vertices) jaw = std::min(jaw, static_cast<float>(p.z()));
+  for (const Vector3f& p : rest) end = std::min(end, p.z());
+  const float top = jaw - below_jaw_mm;
+  if (!std::isfinite(top) || top - end < shortest_neck_mm) return;
+  float front = std::numeric_limits<float>::infinity(), back = -front;
+  for (const Vector3f& p : rest)
+    if (p.z() < top) front = std::min(front, p.y()), back = std::max(back, p.y());
+  for (std::size_t v = 0; v < rest.size(); ++v) {
+    const float still = smooth((top - rest[v].z()) / (top - end));
+    if (!(still > 0)) continue;
+    const float before = smooth(1.6f * (back - rest[v].y()) / (back - front) - 0.6f);
+    const float low = still * still;
+    neck_.push_back({static_cast<int>(v), still,
+                     low * ((1 - before) * shoulders_breathe + before * notch_breathes)});
+  }
+}
+
+/// The wings of the nose, beside and behind its tip.
+void LivingFace::find_nostrils(std::span<const Vector3f> rest) {
+  if (rest.empty()) return;
+  const Vector3f tip = *std::min_element(
+      rest.begin(), rest.end(), [](const Vector3f& a, const Vector3f& b) { return a.y() < b.y(); });
+  for (std::size_t v = 0; v < rest.size(); ++v)
+    for (const float side : {-1.f, 1.f}) {
+      const Vector3f ala(side * ala_from_tip.x(), ala_from_tip.y(), ala_from_tip.z());
+      const float near = std::exp(-(rest[v] - tip - ala).squaredNorm() / (nostril_mm * nostril_mm));
+      if (near > 0.02f)
+        nostrils_.push_back(
+            {static_cast<int>(v), 0, Vector3f(side * nostril_breathes_mm * near, 0, 0)});
+    }
+}
+
+void LivingFace::move_face(const Life& life, const LifeSigns& signs,
+                           std::span<Vector3f> places) const {
+  for (std::size_t i = 0; i < lids_.size(); ++i) {
+    const auto [part, eyeball] = lid_eyes_[i];
+    lids_[i].move(lids_[i].lowered(signs.closure, signs.gaze_up),
+                  eyes_[part]->gaze_of(eyeball, signs), places);
+  }
+  const auto breath = static_cast<float>(signs.breath);
+  for (const Member& member : neck_) {
+    Vector3f& p = places[static_cast<std::size_t>(member.vertex)];
+    const Pose X = still_in_cranium(life, member.still * signs.extension);
+    p = (X * (p + breath * member.breathes).cast<double>()).cast<float>();
+  }
+  for (const Member& member : nostrils_)
+    places[static_cast<std::size_t>(member.vertex)] += breath * member.breathes;
+}
+
+void LivingFace::move_eyes(std::size_t part, const LifeSigns& signs, std::span<Vector3f> places,
+                           std::span<Vector3f> normals) const {
+  if (has_eyes(part)) eyes_[part]->move(signs, lids_, places, normals);
+}
+
+std::string LivingFace::shortfall() const {
+  if (eyeballs_ == 0) return "no eyeballs were found: eyes and lids do not move";
+  if (lids_.empty()) return "no open lids were found: the eyes do not blink";
+  return {};
+}
+
+}  // namespace condyle

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "render/life/life_signs.h"
+#include "render/life/living_eyes.h"
+#include "render/life/upper_lid.h"
+#include "sim/frame/part.h"
+
+namespace condyle {
+
+/// A drawn face and its eyes, moved by signs of life. Deterministic.
+class LivingFace {
+ public:
+  /// parts: of the patient, at rest. rest, triangles: of the drawn face.
+  LivingFace(std::span<const Part> parts, std::span<const Eigen::Vector3f> rest,
+             std::span<const Eigen::Vector3i> triangles);
+
+  /// Moves the present vertices of the drawn face.
+  void move_face(const Life& life, const LifeSigns& signs, std::span<Eigen::Vector3f> places) const;
+  /// Whether move_eyes moves any vertex of the part with this number.
+  bool has_eyes(std::size_t part) const { return part < eyes_.size() && eyes_[part].has_value(); }
+  /// Moves vertices and normals of a part, given at rest.
+  void move_eyes(std::size_t part, const LifeSigns& signs, std::span<Eigen::Vector3f> places,
+                 std::span<Eigen::Vector3f> normals) const;
+
+  /// What of it the patient lacks, as text; empty for nothing.
+  std::string shortfall() const;
+
+ private:
+  struct Member {
+    int vertex;
+    float still;               // 1: it does not follow the head's extension
+    Eigen::Vector3f breathes;  // displacement after inspiration, mm
+  };
+  void find_neck(std::span<const Part> parts, std::span<const Eigen::Vector3f> rest);
+  void find_nostrils(std::span<const Eigen::Vector3f> rest);
+
+  std::vector<std::optional<LivingEyes>> eyes_;  // by part
+  std::vector<UpperLid> lids_;
+  std::vector<std::pair<std::size_t, std::size_t>> lid_eyes_;  // part and eyeball of each lid
+  std::vector<Member> neck_, nostrils_;
+  std::size_t eyeballs_ = 0;
+};
+
+}  // namespace condyle

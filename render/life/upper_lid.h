@@ -1,0 +1,82 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "engine/mesh/tri_mesh.h"
+
+namespace condyle {
+
+/// An eyeball at rest, looking ahead (-y), mm.
+struct Eyeball {
+  Eigen::Vector3f centre = Eigen::Vector3f::Zero();
+  float radius = 12;
+  /// Largest distance of its surface from the centre, by the angle from the gaze in steps of
+  /// `step_rad`: the cornea bulges.
+  std::vector<float> profile = {};
+  static constexpr float step_rad = 0.05f;
+
+  /// Distance of the surface from the centre in a unit direction, for a unit gaze.
+  float reach(const Eigen::Vector3f& direction, const Eigen::Vector3f& gaze) const;
+};
+
+/// The upper lid of one eye, which slides on the eyeball: it turns about the line between the
+/// canthi through the eyeball's centre, so that each point keeps its distance from the latter.
+/// The skin between the lid's edge and the fold above it stretches.
+class UpperLid {
+ public:
+  /// rest: vertices of a face that is open at the eye, mm. Null where no opening of more than 10
+  /// degrees lies before the eyeball.
+  static std::optional<UpperLid> find(std::span<const Eigen::Vector3f> rest,
+                                      std::span<const Eigen::Vector3i> triangles,
+                                      const Eyeball& eyeball);
+
+  const Eyeball& eyeball() const { return eyeball_; }
+
+  /// Fraction of the way to the lower lid for a closure by a blink, and a gaze upwards, rad, that
+  /// the lid follows. A lid that shows all of the iris is lowered a little: the eye would stare.
+  double lowered(double closure, double gaze_up) const;
+
+  /// Moves the lid's vertices by a fraction of the way to the lower lid; none enters the eyeball.
+  /// gaze: unit.
+  void move(double lowered, const Eigen::Vector3f& gaze, std::span<Eigen::Vector3f> places) const;
+
+  /// Whether a point on a lid's edge at rest is on the upper lid.
+  bool is_above(const Eigen::Vector3f& point) const;
+  /// Rotation about the eyeball's centre of what grows from the edge at this point.
+  Eigen::Matrix3f turn_at(const Eigen::Vector3f& point, double lowered) const;
+
+ private:
+  /// Angles of a point seen from the eyeball's centre: `along` the axis from the plane of the
+  /// gaze, and `up` about the axis from straight ahead; rad.
+  struct Angles {
+    double along, up;
+  };
+  /// The opening at one angle along the axis.
+  struct Gap {
+    double bottom = 0, top = 0;
+  };
+  struct Member {
+    int vertex;
+    float turn;  // rad, when the lid is closed
+  };
+  UpperLid(const Eyeball& eyeball) : eyeball_(eyeball) {}
+  Angles angles_of(const Eigen::Vector3d& p) const;
+  Eigen::Vector3d direction(const Angles& angles) const;
+  Gap gap_at(double along) const;
+  double way_at(double along) const;  // of the edge down to the lower lid, rad
+  void scan(const TriMesh& near);
+  void taper();
+  bool lean_on_canthi();
+  void collect(std::span<const Eigen::Vector3f> rest);
+
+  Eyeball eyeball_;
+  Eigen::Vector3d axis_ = {1, 0, 0}, ahead_ = {0, -1, 0}, up_ = {0, 0, 1};
+  std::vector<Gap> gaps_;  // by angle along the axis
+  double widest_ = 0, staring_ = 0;
+  std::vector<Member> members_;
+};
+
+}  // namespace condyle

@@ -1,0 +1,97 @@
+#include "render/scene/face_shape.h"
+
+#include <algorithm>
+
+#include "render/face/drawn_face.h"
+#include "render/mesh/vertex_normals.h"
+#include "render/scene/scene_renderer.h"
+
+namespace condyle {
+namespace {
+
+/// The first face; null without one.
+const Part* face_among(std::span<const Part> parts) {
+  const auto face = std::find_if(parts.begin(), parts.end(),
+                                 [](const Part& part) { return part.role == Role::face; });
+  return face == parts.end() ? nullptr : &*face;
+}
+
+}  // namespace
+
+std::vector<Eigen::Vector3f> float_positions(const TriMesh& mesh) {
+  std::vector<Eigen::Vector3f> positions;
+  positions.reserve(mesh.vertices.size());
+  for (const auto& v : mesh.vertices) positions.push_back(v.cast<float>());
+  return positions;
+}
+
+bool shows_life(std::span<const Part> parts, const PictureSettings& settings) {
+  const Part* face = face_among(parts);
+  if (!settings.life || settings.before_operation || !face || face->mesh.empty()) return false;
+  const auto own = settings.part_opacity.find(face->name);
+  const double opacity =
+      settings.skin_opacity * (own == settings.part_opacity.end() ? 1 : own->second);
+  const auto cuts = [&](const std::vector<std::string>& list) {
+    return list.empty() || std::find(list.begin(), list.end(), face->name) != list.end();
+  };
+  const bool cut = (settings.clip && cuts(settings.clip->parts)) ||
+                   (settings.cut_away && cuts(settings.cut_away->parts));
+  return opacity > nearly_opaque && !cut;
+}
+
+std::string life_note(std::span<const Part> parts, const PictureSettings& settings) {
+  if (!shows_life(parts, settings))
+    return "look only: life is drawn in an opaque, uncut face alone, so these pictures have none";
+  const PreparedParts prepared(parts);
+  const TriMesh& mesh = prepared.drawn(*face_among(parts)).mesh;
+  const std::string lacks = LivingFace(parts, float_positions(mesh), mesh.triangles).shortfall();
+  return "look only: blinks, gaze, pupils, breathing and the head's extension are in the pictures "
+         "alone" +
+         (lacks.empty() ? "" : "; " + lacks);
+}
+
+void FaceShape::place(std::vector<Eigen::Vector3f> places) {
+  places_ = std::move(places);
+  sent_.reset();
+}
+
+void FaceShape::send(std::span<const Part> parts, std::span<Drawable> drawables,
+                     const PictureSettings& settings, double time_s, const Pose& X_CM) {
+  const auto face = std::find_if(drawables.begin(), drawables.end(), [](const Drawable& drawable) {
+    return drawable.part->role == Role::face;
+  });
+  if (face == drawables.end()) return;
+  Look look{.folds = settings.folds};
+  if (shows_life(parts, settings)) {
+    look.life = settings.life;
+    look.signs = life_signs(time_s, X_CM);
+  }
+  if (sent_ ? *sent_ == look : places_.empty() && !look.life) return;
+  const TriMesh& rest = face->part->mesh;
+  Drawable::FaceLook drawn{.folded = look.folds};
+  if (look.life) {
+    if (!living_) living_.emplace(parts, float_positions(rest), face->triangles());
+    drawn.alive = [&](std::span<Eigen::Vector3f> places) {
+      living_->move_face(*look.life, look.signs, places);
+    };
+  }
+  face->move_face(places_.empty() ? float_positions(rest) : places_, drawn, normals_);
+  send_eyes(drawables, look.life ? &look.signs : nullptr);
+  sent_ = look;
+}
+
+/// signs: null at rest.
+void FaceShape::send_eyes(std::span<Drawable> drawables, const LifeSigns* signs) {
+  if (!signs && !eyes_moved_) return;
+  for (std::size_t i = 0; i < drawables.size(); ++i) {
+    if (!living_->has_eyes(i)) continue;
+    const TriMesh& mesh = drawables[i].part->mesh;
+    std::vector<Eigen::Vector3f> places = float_positions(mesh), normals;
+    vertex_normals(places, mesh.triangles, normals);
+    if (signs) living_->move_eyes(i, *signs, places, normals);
+    drawables[i].mesh.send_shape(places, normals);
+  }
+  eyes_moved_ = signs != nullptr;
+}
+
+}  // namespace condyle

@@ -1,0 +1,110 @@
+// Life of a drawn face: its pictures depend on the frame alone, and without life nothing changes.
+#include "render/scene/face_shape.h"
+
+#include "tests/render/life/eye_parts.h"
+#include "tests/render/scene_fixture.h"
+
+namespace condyle {
+namespace {
+
+using LifePictures = WithContext;
+
+/// Eyeballs in blue between the lids of a skin.
+std::vector<Part> eye_and_lids() {
+  TriMesh eye = eyeball(), skin = open_lids();
+  eye.colors.assign(eye.vertices.size(), {0.1f, 0.2f, 1});
+  skin.colors.assign(skin.vertices.size(), {0.8f, 0.6f, 0.5f});
+  return {make_part("face", Role::face, skin), make_part("eyes", Role::eyes, eye)};
+}
+
+PictureSettings alive() {
+  PictureSettings settings = mask_settings();
+  settings.shadows = false;
+  settings.life = Life{};
+  return settings;
+}
+
+Camera eye_camera() {
+  Camera camera = front_camera(26);
+  camera.target = eye_centre;
+  return camera;
+}
+
+FrameState frame_at(double time_s) {
+  FrameState frame;
+  frame.time_s = time_s;
+  return frame;
+}
+
+/// The first time of so much closure.
+double time_of(double closure) {
+  double time_s = 0;
+  while (life_signs(time_s).closure < closure) time_s += 0.001;
+  return time_s;
+}
+
+int blue_in(const Image& image) {
+  int count = 0;
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x) {
+      const Pixel p = pixel(image, x, y);
+      count += p.a > 128 && p.b > p.r + 40;
+    }
+  return count;
+}
+
+TEST_F(LifePictures, ClosedLidsHideTheEyeball) {
+  const std::vector<Part> parts = eye_and_lids();
+  SceneRenderer renderer(parts);
+  const auto blue_at = [&](double time_s, double turn) {
+    Camera camera = eye_camera();
+    camera.direction = {std::sin(turn), -std::cos(turn), 0};
+    renderer.update(frame_at(time_s));
+    return blue_in(renderer.picture(camera, alive()));
+  };
+  for (const double turn : {-0.6, 0.0, 0.6}) {
+    const int open = blue_at(0, turn), half = blue_at(time_of(0.5), turn);
+    EXPECT_GT(open, 1500);
+    EXPECT_GT(half, 0.2 * open);
+    EXPECT_LT(half, 0.8 * open);
+    EXPECT_EQ(blue_at(time_of(1), turn), 0);
+  }
+}
+
+TEST_F(LifePictures, AreThoseWithoutLifeOnceItIsOffAndInGlass) {
+  const std::vector<Part> parts = eye_and_lids();
+  SceneRenderer renderer(parts), other(renderer);
+  const FrameState frame = frame_at(time_of(0.6));
+  auto off = alive();
+  off.life.reset();
+  renderer.update(frame);
+  other.update(frame);
+  const Image without = renderer.picture(eye_camera(), off);
+  const Image with = renderer.picture(eye_camera(), alive());
+  EXPECT_NE(with.rgba, without.rgba);
+  EXPECT_EQ(renderer.picture(eye_camera(), off).rgba, without.rgba);
+  EXPECT_EQ(other.picture(eye_camera(), alive()).rgba, with.rgba) << "in any order";
+  renderer.update(frame_at(0));
+  renderer.picture(eye_camera(), alive());
+  renderer.update(frame);
+  EXPECT_EQ(renderer.picture(eye_camera(), alive()).rgba, with.rgba);
+  off.skin_opacity = 0.5;
+  const Image glass = renderer.picture(eye_camera(), off);
+  off.life = Life{};
+  EXPECT_EQ(renderer.picture(eye_camera(), off).rgba, glass.rgba);
+}
+
+TEST(LifeNote, SaysThatItIsForLooksAndWhatThePatientLacks) {
+  const auto settings = alive();
+  const std::vector<Part> parts = eye_and_lids();
+  EXPECT_TRUE(life_note(parts, settings).starts_with("look only"));
+  EXPECT_EQ(life_note(parts, settings).find("found"), std::string::npos);
+  EXPECT_NE(life_note({parts.data(), 1}, settings).find("no eyeballs were found"),
+            std::string::npos);
+  auto glass = settings;
+  glass.skin_opacity = 0.4;
+  EXPECT_NE(life_note(parts, glass).find("have none"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace condyle

@@ -1,0 +1,86 @@
+// Life of the face is in pictures alone, and only where it is asked for.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "render/life/life_signs.h"
+#include "tests/support/picture.h"
+#include "tests/support/program.h"
+
+namespace condyle::test {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// When the lids are closed for the first time.
+double closed_at() {
+  double time_s = 0;
+  while (life_signs(time_s).closure < 1) time_s += 0.001;
+  return time_s + 0.01;
+}
+
+/// A motion that opens the jaw and ends with closed lids, in three frames.
+std::vector<std::string> recording(const fs::path& out, const std::vector<std::string>& more) {
+  std::vector<std::string> command = {
+      "record",  "--motion", fmt::format("open 20 over {:.3f}", closed_at()),
+      "--frames", "3",       "--camera", "front", "--size", "300x300", "--out", out};
+  command.insert(command.end(), more.begin(), more.end());
+  return command;
+}
+
+TEST(LifeOfTheFace, IsInPicturesAlone) {
+  const Folder folder;
+  const fs::path plain = fs::path(folder / "plain"), alive = fs::path(folder / "alive");
+  Outcome done = condyle(recording(plain, {}));
+  ASSERT_EQ(done.code, 0) << done.err;
+  EXPECT_EQ(done.err.find("look only"), std::string::npos);
+  done = condyle(recording(alive, {"--life", "--threads", "1"}));
+  ASSERT_EQ(done.code, 0) << done.err;
+  EXPECT_NE(done.err.find("note: look only"), std::string::npos) << done.err;
+
+  EXPECT_EQ(read_text(plain / "trace.csv"), read_text(alive / "trace.csv")) << "state hashes, too";
+  auto report = [](const fs::path& out) {
+    auto json = nlohmann::json::parse(read_text(out / "report.json"));
+    json.erase("times_ms");
+    return json;
+  };
+  auto measured = report(plain), with = report(alive);
+  EXPECT_TRUE(std::string(with["pictures"]["life"]).starts_with("look only"));
+  EXPECT_FALSE(measured["pictures"].contains("life"));
+  measured.erase("pictures");
+  with.erase("pictures");
+  EXPECT_EQ(measured, with);
+  const Picture last((plain / "frames/000002.png").string()),
+      closed((alive / "frames/000002.png").string());
+  EXPECT_TRUE(unlike(last, closed, 0.002));
+
+  // A resumed picture is the same, whatever the number of threads.
+  const std::string frame = read_text(alive / "frames/000002.png");
+  fs::remove(alive / "frames/000002.png");
+  done = condyle(recording(alive, {"--life", "--threads", "2", "--resume"}));
+  ASSERT_EQ(done.code, 0) << done.err;
+  EXPECT_EQ(read_text(alive / "frames/000002.png"), frame);
+  // But not a picture without life.
+  done = condyle(recording(alive, {"--resume"}));
+  EXPECT_EQ(done.code, 2);
+}
+
+TEST(LifeOfTheFace, IsRefusedInPicturesThatCompare) {
+  const Folder folder;
+  for (const std::vector<std::string>& more :
+       {std::vector<std::string>{"--wipe", "0.5"},
+        {"--before-after"},
+        {"--show", "distance"},
+        {"--overlay", "patches"}}) {
+    std::vector<std::string> options = {"--life"};
+    options.insert(options.end(), more.begin(), more.end());
+    const Outcome done = condyle(recording(folder / "out", options));
+    EXPECT_EQ(done.code, 2) << more.front();
+    EXPECT_NE(done.err.find("--life"), std::string::npos) << done.err;
+  }
+}
+
+}  // namespace
+}  // namespace condyle::test
