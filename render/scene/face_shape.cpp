@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "render/face/drawn_face.h"
 #include "render/mesh/vertex_normals.h"
 #include "render/scene/scene_renderer.h"
 
@@ -42,8 +41,7 @@ bool shows_life(std::span<const Part> parts, const PictureSettings& settings) {
 std::string life_note(std::span<const Part> parts, const PictureSettings& settings) {
   if (!shows_life(parts, settings))
     return "look only: life is drawn in an opaque, uncut face alone, so these pictures have none";
-  const PreparedParts prepared(parts);
-  const TriMesh& mesh = prepared.drawn(*face_among(parts)).mesh;
+  const TriMesh& mesh = face_among(parts)->mesh;
   const std::string lacks = LivingFace(parts, float_positions(mesh), mesh.triangles).shortfall();
   return "look only: blinks, gaze, pupils, breathing and the head's extension are in the pictures "
          "alone" +

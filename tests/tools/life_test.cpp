@@ -1,8 +1,8 @@
 // Life of the face is in pictures alone, and only where it is asked for.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "render/life/life_signs.h"
@@ -24,8 +24,10 @@ double closed_at() {
 /// A motion that opens the jaw and ends with closed lids, in three frames.
 std::vector<std::string> recording(const fs::path& out, const std::vector<std::string>& more) {
   std::vector<std::string> command = {
-      "record",  "--motion", fmt::format("open 20 over {:.3f}", closed_at()),
-      "--frames", "3",       "--camera", "front", "--size", "300x300", "--out", out};
+      "record",   "--motion", fmt::format("open 20 over {:.3f}", closed_at()),
+      "--frames", "3",        "--camera",
+      "front",    "--size",   "300x300",
+      "--out",    out};
   command.insert(command.end(), more.begin(), more.end());
   return command;
 }
@@ -69,11 +71,10 @@ TEST(LifeOfTheFace, IsInPicturesAlone) {
 
 TEST(LifeOfTheFace, IsRefusedInPicturesThatCompare) {
   const Folder folder;
-  for (const std::vector<std::string>& more :
-       {std::vector<std::string>{"--wipe", "0.5"},
-        {"--before-after"},
-        {"--show", "distance"},
-        {"--overlay", "patches"}}) {
+  for (const std::vector<std::string>& more : {std::vector<std::string>{"--wipe", "0.5"},
+                                               {"--before-after"},
+                                               {"--show", "distance"},
+                                               {"--overlay", "patches"}}) {
     std::vector<std::string> options = {"--life"};
     options.insert(options.end(), more.begin(), more.end());
     const Outcome done = condyle(recording(folder / "out", options));
