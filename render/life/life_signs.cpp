@@ -47,7 +47,7 @@ Eigen::Vector2d fixation(std::int64_t number) {
 
 Eigen::Vector2d gaze(double time_s) {
   constexpr double slot_s = 1.1, varies_s = 0.5;
-  // source: Bahill 1975, the main sequence
+  // source: Carpenter 1988, duration by amplitude
   constexpr double least_s = 0.021, s_per_rad = 0.0022 / rad_per_deg;
   const auto slot = static_cast<std::int64_t>(std::floor(time_s / slot_s));
   const Eigen::Vector2d from = fixation(slot - 1), to = fixation(slot);

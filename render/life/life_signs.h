@@ -16,7 +16,7 @@ struct Life {
   bool operator==(const Life&) const = default;
 };
 
-/// Nodding axis by the midpoint of the condyles of the mandible; source: average adult.
+/// Nodding axis by the midpoint of the condyles of the mandible; its offset was estimated.
 Life life_about(const Eigen::Vector3d& condyles);
 
 /// What a face does by itself. Values between published extremes; the choice at each time is

@@ -14,7 +14,7 @@ using Eigen::Vector3f;
 constexpr float below_jaw_mm = 6, shortest_neck_mm = 30;
 const Vector3f shoulders_breathe(0, -0.4f, 1.2f), notch_breathes(0, -1.2f, 0.5f);  // mm
 constexpr float nostril_breathes_mm = 0.35f, nostril_mm = 6;
-const Vector3f ala_from_tip(16, 16, -5);  // source: average adult
+const Vector3f ala_from_tip(16, 16, -5);  // mm, as in the built-in patient
 
 float smooth(float t) { return static_cast<float>(smooth_step(t)); }
 
