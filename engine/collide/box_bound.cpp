@@ -2,6 +2,10 @@
 
 #include <cmath>
 
+#if defined(__SSE__)
+#include <immintrin.h>
+#endif
+
 namespace condyle {
 namespace {
 
@@ -25,6 +29,15 @@ Four absolute(Four v) {
 Four square_above_zero(Four v) {
   const Four above = v > 0 ? v : Four{};
   return above * above;
+}
+/// Of values that are not negative. The library's function checks each for that.
+Four square_root(Four v) {
+#if defined(__SSE__)
+  return (Four)_mm_sqrt_ps((__m128)v);
+#else
+  for (int lane = 0; lane < 4; ++lane) v[lane] = std::sqrt(v[lane]);
+  return v;
+#endif
 }
 Four dot(const Four* v, const Four* w) { return v[0] * w[0] + v[1] * w[1] + v[2] * w[2]; }
 
@@ -84,9 +97,7 @@ FourFloats gap_bounds(const BoxPair& a, const BoxPair& b, const BoxTransform& X)
     square_a += square_above_zero(in_a[i]);
     square_b += square_above_zero(in_b[i]);
   }
-  Four gaps = square_a > square_b ? square_a : square_b;
-  for (int lane = 0; lane < 4; ++lane) gaps[lane] = std::sqrt(gaps[lane]);
-  return gaps - X.uncertain_mm;
+  return square_root(square_a > square_b ? square_a : square_b) - X.uncertain_mm;
 }
 
 BoxDirection::BoxDirection(const Eigen::Vector3d& direction, const Eigen::Matrix3d& R,
