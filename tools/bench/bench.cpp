@@ -41,10 +41,16 @@ void add_bench(Commands& commands) {
   in_range(tissue.add_option("--sizes", options->sizes,
                              "Nodes of larger tissues; default 10000 50000 100000"),
            200, 1000000);
-  add_patient(add("collide",
-                  "Contact, sliding, dynamics and distance fields, beside FCL's and Bullet's own",
-                  "condyle bench collide --json", run_bench_collide),
-              *options);
+  CLI::App& collide = add(
+      "collide", "Contact, sliding, dynamics and distance fields, beside FCL's and Bullet's own",
+      "condyle bench collide --json", run_bench_collide);
+  add_patient(collide, *options);
+  collide
+      .add_option("--only", options->part,
+                  "Measure one part: pair, blocked_jaw, recorded_overlap, segments, rigid_step, "
+                  "field_build, dynamics or chewing; default all")
+      ->check(CLI::IsMember({"pair", "blocked_jaw", "recorded_overlap", "segments", "rigid_step",
+                             "field_build", "dynamics", "chewing"}));
   CLI::App& cut = add("cut", "Saw cuts and osteotomies of a patient's bones",
                       "condyle bench cut --json", run_bench_cut);
   add_patient(cut, *options);

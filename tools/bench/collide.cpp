@@ -1,17 +1,18 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <span>
 #include <thread>
 
 #include "engine/collide/plain_query.h"
 #include "engine/collide/slide.h"
 #include "engine/core/error.h"
+#include "engine/core/hash.h"
 #include "engine/mesh/measure.h"
 #include "engine/mesh/refine.h"
 #include "engine/mesh/simplify.h"
@@ -21,6 +22,7 @@
 #include "sim/report/report.h"
 #include "tools/bench/baseline/bullet_mesh_pair.h"
 #include "tools/bench/baseline/rigid_scenes.h"
+#include "tools/bench/baseline/tissue_target.h"
 #include "tools/bench/bench.h"
 #include "tools/common.h"
 
@@ -31,12 +33,14 @@ using Eigen::Vector3d;
 using Json = nlohmann::ordered_json;
 
 /// Milliseconds that the work takes.
+struct Took {
+  double wall_ms = 0, cpu_ms = 0;
+};
 template <class Work>
-double timed(Work&& work) {
-  const auto start = std::chrono::steady_clock::now();
+Took timed(Work&& work) {
+  const Stopwatch watch;
   work();
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start)
-      .count();
+  return {watch.wall_ms(), watch.cpu_ms()};
 }
 
 struct Results {
@@ -51,6 +55,17 @@ struct Results {
                 {"samples", ms.size()}};
     row.update(parameters);
     rows.push_back(row);
+  }
+  void add(const std::string& name, const std::vector<Took>& all, const Json& parameters) {
+    std::vector<double> wall, cpu;
+    for (const Took& took : all) {
+      wall.push_back(took.wall_ms);
+      cpu.push_back(took.cpu_ms);
+    }
+    const auto times = summarise(cpu);
+    add(name, wall, parameters);
+    rows.back()["cpu_median"] = times.median;
+    rows.back()["cpu_p95"] = times.p95;
   }
 };
 
@@ -144,7 +159,8 @@ void measure_pair(const Jaws& jaws, int triangles, int threads, bool baselines, 
 
   constexpr int frames = 300, warm_up = 10, look_every = 6;
   for (const int count : thread_counts(threads)) {
-    std::vector<double> ms, fcl, depths;
+    std::vector<Took> ms, fcl;
+    std::vector<double> depths;
     int touching = 0, fewest = 1 << 30;
     SlideCache memory;
     Pose X = grinding(jaws, 0);
@@ -152,7 +168,7 @@ void measure_pair(const Jaws& jaws, int triangles, int threads, bool baselines, 
     for (int frame = 0; frame < frames + warm_up; ++frame) {
       const Pose target = grinding(jaws, frame);
       SlideResult result;
-      const double took = timed([&] { result = model.slide(X, target, &memory, count); });
+      const Took took = timed([&] { result = model.slide(X, target, &memory, count); });
       X = result.X_FM;
       if (frame < warm_up) continue;
       ms.push_back(took);
@@ -179,7 +195,7 @@ void measure_pair(const Jaws& jaws, int triangles, int threads, bool baselines, 
   }
   if (!baselines) return;
   BulletMeshPair bullet(upper, lower);
-  std::vector<double> ms;
+  std::vector<Took> ms;
   int contacts = 0;
   for (int frame = warm_up; frame < frames; frame += 50) {
     BulletMeshPair::Found found;
@@ -230,7 +246,7 @@ void measure_segments(int threads, Results& results) {
     forces.push_back(world.add_force({.body = body}));
     if (i > 0) world.add_pair({.a = body - 1, .b = body});
   }
-  std::vector<double> ms;
+  std::vector<Took> ms;
   std::size_t fewest = 1 << 20;
   int apart = 0;
   for (int step = 0; step < warm_up + steps; ++step) {
@@ -240,7 +256,7 @@ void measure_segments(int threads, Results& results) {
                       {along, shake_N * std::sin(0.05 * step + 2.1 * i),
                        shake_N * std::cos(0.04 * step + 1.3 * i)});
     }
-    const double took = timed([&] { world.step(threads); });
+    const Took took = timed([&] { world.step(threads); });
     if (step < warm_up) continue;
     ms.push_back(took);
     fewest = std::min(fewest, world.contacts().size());
@@ -284,7 +300,7 @@ void measure_dynamics(const Jaws& jaws, int threads, Results& results) {
                         .stiffness_N_mm = 10,
                         .damping_N_s_mm = 0.01});
     const int force = world.add_force({.body = m, .point = jaws.center});
-    std::vector<double> ms;
+    std::vector<Took> ms;
     int touching = 0, step = 0;
     for (int second = 0; second < seconds; ++second)
       ms.push_back(timed([&] {
@@ -301,6 +317,12 @@ void measure_dynamics(const Jaws& jaws, int threads, Results& results) {
                  {"threads", count},
                  {"touching_steps_of_1000", touching / seconds}});
   }
+}
+
+std::uint64_t hash_of(const Pose& X, std::uint64_t before) {
+  const std::array<double, 7> values = {X.R.x(), X.R.y(), X.R.z(), X.R.w(),
+                                        X.t.x(), X.t.y(), X.t.z()};
+  return hash_values(std::span<const double>(values), before);
 }
 
 /// Blocked frames as in the window's loop: the jaw is dragged into the bite, slides on all bones in
@@ -329,24 +351,59 @@ void measure_blocked_jaw(const Case& patient, const Jaws& jaws, int threads, Res
       {"circling in the bite", circling}, {"grinding", grinding_jaw}, {"pushed up", pushed_up}};
   for (const int count : thread_counts(threads))
     for (const auto& [name, target] : drags) {
-      std::vector<double> ms;
+      std::vector<Took> ms;
       double deepest = 0;
+      std::uint64_t poses = hash_start;
       BodyPoses at = model.placed({});
       ContactSet last = model.at_rest();
       for (int f = 0; f < frames; ++f) {
         ContactModel::Slide slide;
-        const double took = timed([&] {
+        const Took took = timed([&] {
           slide = model.slide(at, std::vector{Pose{}, target(f)}, &last, count);
         });
         at = slide.at;
         last = std::move(slide.contacts);
+        poses = hash_of(at[mandible_body], poses);
         deepest = std::max(deepest, last.max_penetration_mm());
         if (slide.stopped) ms.push_back(took);
       }
       if (ms.empty()) continue;
       results.add("collide.blocked_jaw", ms,
-                  {{"drag", name}, {"threads", count}, {"worst_depth_mm", deepest}});
+                  {{"drag", name},
+                   {"threads", count},
+                   {"worst_depth_mm", deepest},
+                   {"poses", fmt::format("{:016x}", poses)}});
     }
+}
+
+/// A recorded motion whose crowns overlap by up to 2 mm as the jaw grinds: the contacts of a frame.
+/// Nothing stops it.
+void measure_recorded_overlap(const Case& patient, const Jaws& jaws, int threads,
+                              Results& results) {
+  constexpr int frames = 240;
+  constexpr double round = 2 * std::numbers::pi / frames;
+  const ContactModel model(patient);
+  for (const int count : thread_counts(threads)) {
+    std::vector<Took> ms;
+    double deepest = 0;
+    std::uint64_t depths = hash_start;
+    ContactSet last = model.at_rest();
+    for (int f = 0; f < frames; ++f) {
+      Pose X;
+      X.R = Eigen::AngleAxisd(0.02 * std::sin(2 * round * f), Vector3d(0.3, 0.2, 1).normalized());
+      X.t = jaws.center - X.R * jaws.center +
+            Vector3d(2.5 * std::sin(round * f), 1.5 * std::sin(2 * round * f),
+                     1 - std::cos(3 * round * f));
+      ms.push_back(timed([&] { last = model.find(BodyPoses(X), &last, count); }));
+      deepest = std::max(deepest, last.max_penetration_mm());
+      for (const PairContact& pair : last.pairs)
+        depths = hash_bytes(&pair.depth_mm, sizeof pair.depth_mm, depths);
+    }
+    results.add("collide.recorded_overlap", ms,
+                {{"threads", count},
+                 {"worst_depth_mm", deepest},
+                 {"depths", fmt::format("{:016x}", depths)}});
+  }
 }
 
 /// Muscle-driven chewing on food with the patient's own crowns: timed per simulated second, one
@@ -356,7 +413,8 @@ void measure_chewing(const Case& patient, Results& results) {
   constexpr double cycle_s = 0.7;
   MuscleJaw jaw(patient, {.bolus = {.side = BolusSettings::Side::right},
                           .hyoid = MuscleJawSettings::HyoidMode::fixed});
-  std::vector<double> ms, excitations(jaw.muscles().size());
+  std::vector<Took> ms;
+  std::vector<double> excitations(jaw.muscles().size());
   double widest_mm = 0;
   const Vector3d incisor = *patient.landmarks.find("lower_incisal_point");
   for (int second = 0; second < seconds; ++second)
@@ -405,7 +463,7 @@ void measure_field(const Jaws& jaws, int threads, Results& results) {
   const FieldSettings settings = near_bite(jaws).field;
   const auto folder = std::filesystem::temp_directory_path() /
                       fmt::format("condyle-bench-{}", static_cast<long>(getpid()));
-  std::vector<double> cold, kept;
+  std::vector<Took> cold, kept;
   for (int i = 0; i < 3; ++i)
     cold.push_back(timed([&] { const DistanceField field(bone, settings, threads); }));
   std::filesystem::create_directories(folder);
@@ -431,22 +489,25 @@ int run_bench_collide(const BenchOptions& options, const CommonOptions& common) 
   const Case patient = open_patient(options.patient, common, bar);
   const Jaws jaws = find_jaws(patient);
   Results results;
-  bar.show("two bones of 50,000", 0.05);
-  measure_pair(jaws, 50000, common.threads, true, results);
-  bar.show("two bones of 300,000", 0.25);
-  measure_pair(jaws, 300000, common.threads, false, results);
-  bar.show("the jaw in its bite", 0.5);
-  measure_blocked_jaw(patient, jaws, common.threads, results);
-  bar.show("ten segments", 0.6);
-  for (const int threads : thread_counts(common.threads)) measure_segments(threads, results);
-  bar.show("joints and slopes", 0.65);
-  measure_rigid(results);
-  bar.show("distance field", 0.7);
-  measure_field(jaws, common.threads, results);
-  bar.show("dynamics", 0.8);
-  measure_dynamics(jaws, common.threads, results);
-  bar.show("chewing", 0.95);
-  measure_chewing(patient, results);
+  const auto part = [&](const char* name, double done, const auto& measure) {
+    if (!options.part.empty() && options.part != name) return;
+    bar.show(name, done);
+    measure();
+  };
+  part("pair", 0.05, [&] {
+    measure_pair(jaws, 50000, common.threads, true, results);
+    measure_pair(jaws, 300000, common.threads, false, results);
+  });
+  part("blocked_jaw", 0.5, [&] { measure_blocked_jaw(patient, jaws, common.threads, results); });
+  part("recorded_overlap", 0.55,
+       [&] { measure_recorded_overlap(patient, jaws, common.threads, results); });
+  part("segments", 0.6, [&] {
+    for (const int threads : thread_counts(common.threads)) measure_segments(threads, results);
+  });
+  part("rigid_step", 0.65, [&] { measure_rigid(results); });
+  part("field_build", 0.7, [&] { measure_field(jaws, common.threads, results); });
+  part("dynamics", 0.8, [&] { measure_dynamics(jaws, common.threads, results); });
+  part("chewing", 0.95, [&] { measure_chewing(patient, results); });
   bar.clear();
 
   Json json;
