@@ -82,6 +82,17 @@ void SurfaceBuffer::light(int number, const DrawnBox& box) const {
   glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
+void SurfaceBuffer::begin_edges() {
+  if (!marked_) marked_.emplace();
+  glBindFramebuffer(GL_FRAMEBUFFER, marked_->target);
+  if (marked_->width == width_ && marked_->height == height_) return;
+  make_texture(marked_->edges, GL_R8, GL_RED, GL_UNSIGNED_BYTE, width_, height_);
+  attach(GL_COLOR_ATTACHMENT0, marked_->edges);
+  require_complete(width_, height_);
+  marked_->width = width_;
+  marked_->height = height_;
+}
+
 void SurfaceBuffer::end() const {
   glDisable(GL_STENCIL_TEST);
   glEnable(GL_DEPTH_TEST);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "render/gl/gl_objects.h"
 #include "render/image/drawn_box.h"
 
@@ -31,6 +33,9 @@ class SurfaceBuffer {
   GLuint away() const { return away_; }
   GLuint depth() const { return depth_; }
   GLuint lit() const { return lit_; }
+  /// Marks of pixels, for pictures with several samples; binds the target of those marks.
+  GLuint edges() const { return marked_->edges; }
+  void begin_edges();
 
  private:
   GlFramebuffer surfaces_, light_;
@@ -38,6 +43,12 @@ class SurfaceBuffer {
   GlTexture away_;   // distance from the eye, mm; huge where nothing is
   GlTexture lit_;    // as displayed, and the surface's number
   GlTexture depth_;  // of the window, with the numbers as stencil
+  struct Marked {
+    GlFramebuffer target;
+    GlTexture edges;
+    int width = 0, height = 0;
+  };
+  std::optional<Marked> marked_;  // from the first request on
   int width_ = 0, height_ = 0;
 };
 

@@ -7,14 +7,18 @@ namespace condyle {
 
 Background::Background() : program_("background", background_shaders()) {}
 
+void Background::set_in(GlProgram& program, int width, int height, Backdrop shade) {
+  program.set("pixel",
+              Eigen::Vector2f(1 / static_cast<float>(width), 1 / static_cast<float>(height)));
+  program.set("light", shade == Backdrop::light ? 1 : 0);
+}
+
 void Background::draw(int width, int height, Backdrop shade) {
   glDepthFunc(GL_LEQUAL);
   glDepthMask(GL_FALSE);
   glDisable(GL_CULL_FACE);
   program_.use();
-  program_.set("pixel",
-               Eigen::Vector2f(1 / static_cast<float>(width), 1 / static_cast<float>(height)));
-  program_.set("light", shade == Backdrop::light ? 1 : 0);
+  set_in(program_, width, height, shade);
   glBindVertexArray(no_attributes_);
   glDrawArrays(GL_TRIANGLES, 0, 3);
   glDepthMask(GL_TRUE);

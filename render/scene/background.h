@@ -15,6 +15,8 @@ class Background {
 
   /// Fills the empty pixels of the bound framebuffer, of this size: where its depths are cleared.
   void draw(int width, int height, Backdrop shade);
+  /// Sets the uniforms of its colour in a program in use.
+  static void set_in(GlProgram& program, int width, int height, Backdrop shade);
 
   /// A whole background picture, RGBA, rows from the bottom; cached for each size and shade.
   const std::vector<std::uint8_t>& picture(int width, int height, Backdrop shade);

@@ -42,6 +42,14 @@ Viewpoint eye_of(const PictureView& view) {
   return {view.view_projection, view.eye.homogeneous(), view.width, view.height};
 }
 
+void bind_texture(GLenum unit, GLuint texture) {
+  glActiveTexture(unit);
+  glBindTexture(GL_TEXTURE_2D, texture);
+}
+
+/// Lit pixels store the number of their surface in place of their opacity.
+float number_of(std::size_t item) { return static_cast<float>(item + 1) / 255; }
+
 /// Calls for each face that hides surfaces behind it.
 template <class Add>
 void each_covering(std::span<const DrawItem> items, const Add& add) {
@@ -100,6 +108,8 @@ Passes::Passes()
       marker_("marker", marker_shaders()),
       carry_("carry", carry_shaders()),
       place_("place", place_shaders()),
+      edges_("edges", edge_shaders()),
+      inner_("inner", inner_shaders()),
       shadow_map_(shadow_side) {
   const auto table = make_skin_table();
   glBindTexture(GL_TEXTURE_2D, skin_table_);
@@ -176,8 +186,8 @@ void Passes::shadow_map(std::span<const DrawItem> items, const PictureView& view
   glFlush();  // without a GPU it is drawn in parallel with the following
 }
 
-void Passes::background(const PictureView& view, Backdrop shade) {
-  background_.draw(view.width, view.height, shade);
+void Passes::background(const PictureView& view) {
+  if (view.backdrop && !has_backdrop_) background_.draw(view.width, view.height, *view.backdrop);
 }
 
 GlProgram& Passes::Programs::of(const Shading& shading) {
@@ -315,18 +325,6 @@ void Passes::deferred(std::span<const DrawItem> items, const PictureView& view) 
   }
   glFlush();
 
-  const auto bind = [](GLenum unit, GLuint texture) {
-    glActiveTexture(unit);
-    glBindTexture(GL_TEXTURE_2D, texture);
-  };
-  // Lit pixels store the number of their surface in place of their opacity.
-  const auto number_of = [](std::size_t i) { return static_cast<float>(i + 1) / 255; };
-  const auto see = [&](GlProgram& program) {
-    bind(GL_TEXTURE5, buffer_.words());
-    bind(GL_TEXTURE6, buffer_.away());
-    program.set("kept_words", 5);
-    program.set("kept_away", 6);
-  };
   buffer_.begin_light();
   for (std::size_t i = 0; i < items.size(); ++i) {
     PictureBounds bounds(view.width, view.height, view.view_projection);
@@ -335,7 +333,7 @@ void Passes::deferred(std::span<const DrawItem> items, const PictureView& view) 
     if (!seen[i] || box.empty()) continue;
     GlProgram& program =
         begin(items[i].role() == Role::face ? skins_ : surfaces_, items[i], view, true);
-    see(program);
+    see_stored(program);
     program.set("opacity", number_of(i));
     view.set_rays_in(program);
     glBindVertexArray(no_attributes_);
@@ -345,27 +343,85 @@ void Passes::deferred(std::span<const DrawItem> items, const PictureView& view) 
 
   glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(target));
   glScissor(view.box.x0, view.box.y0, view.box.width(), view.box.height());
-  GlProgram& last = view.one_sample ? place_ : carry_;
-  last.use();
-  see(last);
-  bind(GL_TEXTURE7, buffer_.lit());
-  last.set("lit", 7);
-  if (view.one_sample) {
-    bind(GL_TEXTURE6, buffer_.depth());
-    last.set("kept_depth", 6);
-    glBindVertexArray(no_attributes_);
-    glDisable(GL_CULL_FACE);
-    glDrawArrays(GL_TRIANGLES, 0, 3);
-    return;
-  }
-  last.set("last_pixel", Eigen::Vector2i(view.width - 1, view.height - 1));
+  if (view.one_sample)
+    place_all(view);
+  else
+    place_sampled(items, seen, view, static_cast<GLuint>(target));
+}
+
+void Passes::see_stored(GlProgram& program) {
+  bind_texture(GL_TEXTURE5, buffer_.words());
+  bind_texture(GL_TEXTURE6, buffer_.away());
+  program.set("kept_words", 5);
+  program.set("kept_away", 6);
+}
+
+void Passes::see_lit(GlProgram& program, const PictureView& view) {
+  see_stored(program);
+  bind_texture(GL_TEXTURE7, buffer_.lit());
+  bind_texture(GL_TEXTURE8, buffer_.depth());
+  program.set("lit", 7);
+  program.set("kept_depth", 8);
+  program.set("last_pixel", Eigen::Vector2i(view.width - 1, view.height - 1));
+}
+
+void Passes::place_all(const PictureView& view) {
+  place_.use();
+  see_lit(place_, view);
+  Background::set_in(place_, view.width, view.height, view.backdrop.value_or(Backdrop::dark));
+  place_.set("behind", view.backdrop ? 1.f : 0.f);
+  glBindVertexArray(no_attributes_);
+  glDisable(GL_CULL_FACE);
+  glDepthFunc(GL_ALWAYS);
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  glDepthFunc(GL_LESS);
+  has_backdrop_ = true;
+}
+
+void Passes::find_edges(const PictureView& view) {
+  buffer_.begin_edges();
+  edges_.use();
+  see_lit(edges_, view);
+  glDisable(GL_DEPTH_TEST);
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  glEnable(GL_DEPTH_TEST);
+  const DrawnBox& box = view.box;
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glReadPixels(box.x0, box.y0, box.width(), box.height(), GL_RED, GL_UNSIGNED_BYTE,
+               edge_pixels_.marks_within(box).data());
+  glPixelStorei(GL_PACK_ALIGNMENT, 4);
+}
+
+void Passes::place_sampled(std::span<const DrawItem> items, const std::vector<char>& seen,
+                           const PictureView& view, GLuint target) {
+  glBindVertexArray(no_attributes_);
+  glDisable(GL_CULL_FACE);
+  find_edges(view);
+  glBindFramebuffer(GL_FRAMEBUFFER, target);
+  // Pixels without edges come first; the stencil keeps them from being drawn again.
+  glEnable(GL_STENCIL_TEST);
+  glStencilFunc(GL_ALWAYS, 1, 0xff);
+  glStencilOp(GL_KEEP, GL_KEEP, GL_REPLACE);
+  inner_.use();
+  see_lit(inner_, view);
+  bind_texture(GL_TEXTURE9, buffer_.edges());
+  inner_.set("edges", 9);
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  glStencilFunc(GL_EQUAL, 0, 0xff);
+  glStencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
+  carry_.use();
+  see_lit(carry_, view);
   for (std::size_t i = 0; i < items.size(); ++i) {
     if (!seen[i]) continue;
-    place(last, items[i], view);
-    last.set("number", number_of(i));
-    items[i].mesh().draw(seen_of(items[i], view));
+    place(carry_, items[i], view);
+    carry_.set("number", number_of(i));
+    const auto& mesh = items[i].mesh();
+    mesh.draw(edge_pixels_.touching(mesh.points(), seen_of(items[i], view),
+                                    view.view_projection * items[i].model, view.width,
+                                    view.height));
     end_cut();
   }
+  glDisable(GL_STENCIL_TEST);
 }
 
 void Passes::opaque(std::span<const DrawItem> items, const PictureView& view) {
@@ -389,6 +445,12 @@ void Passes::opaque(std::span<const DrawItem> items, const PictureView& view) {
                         std::ssize(whole) < SurfaceBuffer::max_surfaces;
       (kept ? whole : others).push_back(item);
     }
+  has_backdrop_ = false;
+  if (whole.empty() || !view.one_sample) {
+    glClearColor(0, 0, 0, 0);
+    glClearStencil(0);
+    glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT | GL_STENCIL_BUFFER_BIT);
+  }
   if (!whole.empty()) deferred(whole, view);
   for (const auto& item : whole)
     if (item.role() == Role::face) shade_interior(item, view);

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <optional>
 #include <span>
+#include <vector>
 
 #include "render/gl/framebuffer.h"
 #include "render/gl/surface_buffer.h"
@@ -12,6 +14,7 @@
 #include "render/image/drawn_box.h"
 #include "render/scene/background.h"
 #include "render/scene/drawable.h"
+#include "render/scene/edge_pixels.h"
 #include "render/scene/lights.h"
 #include "render/scene/visibility.h"
 #include "render/shaders/shaders.h"
@@ -48,8 +51,9 @@ struct PictureView {
   Lights lights;
   float pixels_per_unit;  // of a length across the line of sight at distance 1
   bool shadows = true;
-  bool light = false;   // of the backdrop: bright lines get a dark border
-  bool coarse = false;  // coarse shapes where accurate enough
+  std::optional<Backdrop> backdrop;  // none: transparent
+  bool light = false;                // of the backdrop: bright lines get a dark border
+  bool coarse = false;               // coarse shapes where accurate enough
   // an opaque face excludes the sky from the mouth, except through its window
   bool dark_mouth = false;
   bool opaque_face = false;  // hides most of the rest
@@ -93,8 +97,10 @@ class Passes {
   void set_colour_map(const ColourMap& map);
 
   void shadow_map(std::span<const DrawItem> items, const PictureView& view);
-  void background(const PictureView& view, Backdrop shade);
+  /// Clears the box and draws the opaque items.
   void opaque(std::span<const DrawItem> items, const PictureView& view);
+  /// The backdrop, unless `opaque` has drawn it.
+  void background(const PictureView& view);
   /// Their bounds.
   static void add_contacts(std::span<const Eigen::Vector3f> points, PictureBounds& bounds,
                            const PictureView& view);
@@ -121,24 +127,35 @@ class Passes {
   void place(GlProgram& program, const DrawItem& item, const PictureView& view);
   GlProgram& begin(Programs& programs, const DrawItem& item, const PictureView& view,
                    bool deferred);
+  /// Give a program the stored pixels, and these with their light.
+  void see_stored(GlProgram& program);
+  void see_lit(GlProgram& program, const PictureView& view);
   /// Its front, or both sides of an open surface.
   const std::vector<Eigen::Vector3i>& seen_of(const DrawItem& item, const PictureView& view);
   void shade(const DrawItem& item, const PictureView& view);
   void shade_interior(const DrawItem& item, const PictureView& view);
   /// Deferred shading of all of these, each visible pixel lit once.
   void deferred(std::span<const DrawItem> items, const PictureView& view);
+  /// Copies the lit pixels into the picture, with their depth: of one sample, with the backdrop, or
+  /// of several.
+  void place_all(const PictureView& view);
+  void find_edges(const PictureView& view);
+  void place_sampled(std::span<const DrawItem> items, const std::vector<char>& seen,
+                     const PictureView& view, GLuint target);
   void depth_only(const DrawItem& item, const PictureView& view);
 
   Programs surfaces_, skins_, interiors_, kept_;
-  GlProgram depth_, marker_, carry_, place_;
+  GlProgram depth_, marker_, carry_, place_, edges_, inner_;
   GlVertexArray no_attributes_;
   SurfaceBuffer buffer_;
   Background background_;
+  bool has_backdrop_ = false;  // the present picture
   GlTexture skin_table_, skin_detail_, colour_table_;
   ColourMap colour_map_;
   DepthMap shadow_map_;
   Visibility visibility_;
   CoverGrid cover_;  // by the opaque face
+  EdgePixels edge_pixels_;
 };
 
 }  // namespace condyle

@@ -287,6 +287,7 @@ PictureView SceneRenderer::State::view(const Camera& camera, const PictureSettin
       settings.height / 2.0 / std::tan(camera.field_of_view_deg * std::numbers::pi / 360));
   v.shadows = settings.shadows;
   v.light = settings.backdrop == Backdrop::light;
+  if (!settings.transparent) v.backdrop = settings.backdrop;
   v.coarse = settings.coarse;
   v.may_cull = away > radius + 5;
   v.skin_opacity = static_cast<float>(std::clamp(settings.skin_opacity, 0.0, 1.0));
@@ -461,8 +462,6 @@ void SceneRenderer::draw(const Camera& camera, const PictureSettings& settings,
   view.one_sample = sample_buffers == 0;
   glEnable(GL_SCISSOR_TEST);
   glScissor(box.x0, box.y0, box.width(), box.height());
-  glClearColor(0, 0, 0, 0);
-  glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
   const auto mouth = s.mouth_cavity(items, view);
   view.sectioned = mouth && mouth->clipped;
   auto surfaces = items;
@@ -472,7 +471,7 @@ void SceneRenderer::draw(const Camera& camera, const PictureSettings& settings,
   s.overlays.caps(items, view, mouth ? &*s.mouth : nullptr,
                   view.sectioned ? std::span<const SectionSolid>(*s.section_solids)
                                  : std::span<const SectionSolid>());
-  if (!settings.transparent) s.passes.background(view, settings.backdrop);
+  s.passes.background(view);
   if (settings.contacts) s.passes.contacts(s.contacts, view, !view.opaque_face);
   for (const auto& item : items)
     if (settings.ghost && item.role() != Role::face && s.leaves_ghost(item, *settings.ghost))

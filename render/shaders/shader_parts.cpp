@@ -15,6 +15,23 @@ vec3 shade_offset(vec3 n, vec3 key, vec3 to_eye, float open, float gloss) {
 }
 )";
 
+const char* const backdrop_source = R"(
+uniform vec2 pixel;  // 1 / size of the picture
+uniform int light;
+vec3 backdrop() {
+  vec2 place = gl_FragCoord.xy * pixel;  // of the whole pixel, independent of sampling
+  // A pool of light behind the head; half a grey level of ordered noise hides the bands.
+  float pool = exp(-2.2 * dot(place - vec2(0.5, 0.48), place - vec2(0.5, 0.48)));
+  vec3 c = mix(vec3(0.085, 0.090, 0.100), vec3(0.295, 0.305, 0.325), pool * (0.55 + 0.45 * place.y));
+  if (light == 1)
+    c = mix(vec3(0.740, 0.765, 0.790), vec3(0.905, 0.915, 0.925), pool * (0.55 + 0.45 * place.y));
+  ivec2 cell = ivec2(gl_FragCoord.xy) & 3;
+  int rank = ((cell.x ^ cell.y) & 1) * 8 + (cell.y & 1) * 4
+           + (((cell.x ^ cell.y) >> 1) & 1) * 2 + ((cell.y >> 1) & 1);
+  return c + (float(rank) / 15.0 - 0.5) / 255.0;
+}
+)";
+
 namespace {
 
 // `invariant`: a part that is drawn twice must have identical depths.

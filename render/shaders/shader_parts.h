@@ -14,6 +14,7 @@ std::string surface_vertices();
 std::string shading_constants(const Shading& shading);
 
 extern const char* const shade_offset_source;   // where the shadow map is sampled for a point
+extern const char* const backdrop_source;       // the colour behind everything
 extern const char* const whole_picture_source;  // a vertex shader
 extern const char* const pixel_source;          // declares the inputs of lighting
 extern const char* const begin_pixel_source;    // and reads them

@@ -26,6 +26,8 @@ ShaderSource interior_shaders(const Shading&);
 ShaderSource keep_shaders(const Shading&);  // inputs of lighting, per pixel
 ShaderSource carry_shaders();               // copies the lit pixels, surface by surface
 ShaderSource place_shaders();               // or all at once
+ShaderSource edge_shaders();                // marks the pixels with edges of surfaces
+ShaderSource inner_shaders();               // copies the others into every sample
 ShaderSource depth_shaders();  // only depth: shadow map and prepass of translucent parts
 ShaderSource background_shaders();
 ShaderSource marker_shaders();  // contact points and dots

@@ -128,12 +128,50 @@ void main() {
 }
 )";
 
-// The same for pictures with one sample per pixel: all surfaces at once.
+// The same for pictures with one sample per pixel: all surfaces at once, before the backdrop.
 const char* const place_source = R"(
 uniform sampler2D kept_depth, lit;
+uniform float behind;  // opacity of the backdrop
+out vec4 result;
+void main() {
+  ivec2 at = ivec2(gl_FragCoord.xy);
+  float depth = texelFetch(kept_depth, at, 0).r;
+  gl_FragDepth = depth;
+  result = depth < 1.0 ? vec4(texelFetch(lit, at, 0).rgb, 1.0) : behind * vec4(backdrop(), 1.0);
+}
+)";
+
+// Marks the pixels in which surfaces may have an edge: where neighbours belong to another one, or
+// depth is not steady.
+const char* const edge_source = R"(
+uniform sampler2D kept_away, lit;
+uniform ivec2 last_pixel;
+out float marked;
+void main() {
+  ivec2 pixel = ivec2(gl_FragCoord.xy);
+  float own = texelFetch(kept_away, pixel, 0).r, number = texelFetch(lit, pixel, 0).a;
+  const float none = 1e20;
+  bool edge = false;
+  for (int i = 0; i < 2; ++i) {
+    ivec2 off = ivec2(i, 1 - i);
+    ivec2 there = min(pixel + off, last_pixel), back = max(pixel - off, ivec2(0));
+    float a = texelFetch(kept_away, there, 0).r, b = texelFetch(kept_away, back, 0).r;
+    float other = max(abs(texelFetch(lit, there, 0).a - number),
+                      abs(texelFetch(lit, back, 0).a - number));
+    edge = edge || (own > none ? min(a, b) < none
+                               : abs(a + b - 2.0 * own) > 0.03 + 0.2 * abs(a - b) || other > 0.001);
+  }
+  marked = edge ? 1.0 : 0.0;
+}
+)";
+
+// For pictures with several samples per pixel: all samples of a pixel without edges have its light.
+const char* const inner_source = R"(
+uniform sampler2D kept_depth, kept_away, lit, edges;
 out vec4 result;
 void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
+  if (texelFetch(edges, pixel, 0).r > 0.0 || texelFetch(kept_away, pixel, 0).r > 1e20) discard;
   gl_FragDepth = texelFetch(kept_depth, pixel, 0).r;
   result = vec4(texelFetch(lit, pixel, 0).rgb, 1.0);
 }
@@ -146,7 +184,14 @@ ShaderSource keep_shaders(const Shading& shading) {
 }
 ShaderSource carry_shaders() { return {surface_vertices(), shading_constants({}) + carry_source}; }
 ShaderSource place_shaders() {
-  return {shading_constants({}) + whole_picture_source, shading_constants({}) + place_source};
+  return {shading_constants({}) + whole_picture_source,
+          shading_constants({}) + backdrop_source + place_source};
+}
+ShaderSource edge_shaders() {
+  return {shading_constants({}) + whole_picture_source, shading_constants({}) + edge_source};
+}
+ShaderSource inner_shaders() {
+  return {shading_constants({}) + whole_picture_source, shading_constants({}) + inner_source};
 }
 
 }  // namespace condyle

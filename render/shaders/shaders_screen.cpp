@@ -1,3 +1,6 @@
+#include <string>
+
+#include "render/shaders/shader_parts.h"
 #include "render/shaders/shaders.h"
 
 namespace condyle {
@@ -33,22 +36,9 @@ void main() {
 }
 )";
 
-const char* const background_fragment = R"(#version 330 core
-uniform vec2 pixel;  // 1 / size of the picture
-uniform int light;
+const char* const background_fragment = R"(
 out vec4 result;
-void main() {
-  vec2 place = gl_FragCoord.xy * pixel;  // of the whole pixel, independent of sampling
-  // A pool of light behind the head; half a grey level of ordered noise hides the bands.
-  float pool = exp(-2.2 * dot(place - vec2(0.5, 0.48), place - vec2(0.5, 0.48)));
-  vec3 c = mix(vec3(0.085, 0.090, 0.100), vec3(0.295, 0.305, 0.325), pool * (0.55 + 0.45 * place.y));
-  if (light == 1)
-    c = mix(vec3(0.740, 0.765, 0.790), vec3(0.905, 0.915, 0.925), pool * (0.55 + 0.45 * place.y));
-  ivec2 cell = ivec2(gl_FragCoord.xy) & 3;
-  int rank = ((cell.x ^ cell.y) & 1) * 8 + (cell.y & 1) * 4
-           + (((cell.x ^ cell.y) >> 1) & 1) * 2 + ((cell.y >> 1) & 1);
-  result = vec4(c + (float(rank) / 15.0 - 0.5) / 255.0, 1.0);
-}
+void main() { result = vec4(backdrop(), 1.0); }
 )";
 
 const char* const marker_vertex = R"(#version 330 core
@@ -136,7 +126,10 @@ void main() {
 
 ShaderSource line_shaders() { return {line_vertex, line_fragment}; }
 ShaderSource depth_shaders() { return {depth_vertex, depth_fragment}; }
-ShaderSource background_shaders() { return {background_vertex, background_fragment}; }
+ShaderSource background_shaders() {
+  return {background_vertex,
+          std::string("#version 330 core\n") + backdrop_source + background_fragment};
+}
 ShaderSource marker_shaders() { return {marker_vertex, marker_fragment}; }
 
 }  // namespace condyle
