@@ -234,6 +234,7 @@ GlProgram& Passes::begin(Programs& programs, const DrawItem& item, const Picture
                                     .cuttable = item.cut(),
                                     .seen_through = !item.opaque(),
                                     .skin = role == Role::face,
+                                    .smooth_skin = role == Role::face && view.coarse,
                                     .deferred = deferred});
   program.use();
   view.lights.set_in(program);

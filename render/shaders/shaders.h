@@ -14,8 +14,9 @@ struct ShaderSource {
 /// every pixel.
 struct Shading {
   bool shadowed = false, mapped = false, coated = false, cuttable = false, seen_through = false;
-  bool skin = false;      // otherwise bone, teeth, eyes, ...: type of the stored pixels
-  bool deferred = false;  // lights stored pixels (see surface_buffer.h)
+  bool skin = false;         // otherwise bone, teeth, eyes, ...: type of the stored pixels
+  bool smooth_skin = false;  // without pores
+  bool deferred = false;     // lights stored pixels (see surface_buffer.h)
   auto operator<=>(const Shading&) const = default;
 };
 

@@ -143,7 +143,9 @@ vec3 display(vec3 c) {
     c = mix(c, vec3(toned), 1.0 - 1.0 / (0.25 * (peak - toned) + 1.0));
   }
   c = clamp(c, 0.0, 1.0);
-  return mix(12.92 * c, 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, step(0.0031308, c));
+  // Roots take a third of the time of the power 1/2.4; the fit is within 0.02 of 255.
+  vec3 s = sqrt(c), q = sqrt(s), e = sqrt(q);
+  return mix(12.92 * c, 0.64239 * s + 0.71208 * q - 0.33686 * e - 0.01757 * c, step(0.0031308, c));
 }
 )";
 
@@ -243,6 +245,7 @@ uniform float pixel_size;       // of a pixel at distance 1
 
 // The field at a position, at the level of detail of a pixel's size on the surface.
 vec4 detail(vec3 place, float period, float pixel_mm) {
+  if (smooth_skin) return vec4(0.0);
   float level = log2(pixel_mm * float(detail_side) / period);
   return textureLod(skin_detail, place * (1.0 / period), max(level, 0.0)) - 0.5;
 }
@@ -269,7 +272,9 @@ void main() {
   float lit = seen.x;
   // Light that enters beside a shadow's edge emerges red inside it, about 2 mm farther.
   vec3 tint = mix(vec3(0.62, 1.0, 1.12), vec3(1.0), clamp(seen.y / 6.0, 0.0, 1.0));
-  vec3 tinted = shadowed ? pow(vec3(lit), tint) : vec3(1.0);
+  vec3 tinted = vec3(lit);
+  bool dimmed = shadowed && lit > 0.0 && lit < 1.0;
+  for (int i = 0; i < (dimmed ? 1 : 0); ++i) tinted = pow(vec3(lit), tint);
   vec3 occlusion = colored_occlusion(ao, albedo);
   const vec3 bleed = vec3(0.42, 0.24, 0.16);
   float fn = dot(n, fill_direction), rn = dot(n, rim_direction);
