@@ -4,8 +4,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 
+#include "engine/core/archive.h"
 #include "engine/core/parallel.h"
+#include "engine/core/user_cache.h"
 
 namespace condyle {
 namespace {
@@ -78,23 +81,15 @@ double find_translation(const JointSurfaces& joint, JawSide side,
   return drop;
 }
 
-}  // namespace
-
-double DiscGap::at(double forward_mm) const {
-  constexpr double thinned_by_mm = 7;  // on the slope of the eminence
-  const double u = std::clamp(forward_mm / thinned_by_mm, 0.0, 1.0);
-  return seated_mm + (front_mm - seated_mm) * u * u * (3 - 2 * u);
-}
-
-CondylarPathTable::CondylarPathTable(const JointSurfaces& joint, JawSide side,
-                                     const Settings& settings, int threads)
-    : theta_(even(0, settings.largest_theta, theta_rows)), shift_{0.0} {
-  const double widest = settings.widest_shift_mm;
-  if (widest > 0) shift_ = even(-widest, widest, shift_rows);
-  inferior_.resize(theta_.size() * shift_.size());
-  parallel_for(inferior_.size(), threads, [&](std::size_t row) {
-    const double theta = theta_[row / shift_.size()], shift = shift_[row % shift_.size()];
-    std::vector<double> forward{0}, needed{0};
+/// The inferior translations by forward travel in steps of `step_mm`, for each theta and shift.
+std::vector<std::vector<double>> find_rows(const JointSurfaces& joint, JawSide side,
+                                           const CondylarPathTable::Settings& settings,
+                                           const std::vector<double>& thetas,
+                                           const std::vector<double>& shifts, int workers) {
+  std::vector<std::vector<double>> rows(thetas.size() * shifts.size());
+  parallel_for(rows.size(), workers, [&](std::size_t row) {
+    const double theta = thetas[row / shifts.size()], shift = shifts[row % shifts.size()];
+    std::vector<double> needed{0};
     TrianglePair start;
     const auto seated_gap = [&](double aside) {
       const Eigen::Quaterniond R(Eigen::AngleAxisd(theta, settings.axis));
@@ -111,15 +106,60 @@ CondylarPathTable::CondylarPathTable(const JointSurfaces& joint, JawSide side,
       const double target = settings.gap.at(s) - lost * (1 - u * u * (3 - 2 * u));
       needed.push_back(find_translation(joint, side, settings, s, theta, shift, target,
                                         needed.back() + trend, start));
-      forward.push_back(s);
     }
     // The path does not rise again, and the facets of the surface are smoothed.
     for (std::size_t i = 1; i < needed.size(); ++i) needed[i] = std::max(needed[i], needed[i - 1]);
-    std::vector<double> smooth = needed;
+    std::vector<double>& smooth = rows[row] = needed;
     for (std::size_t i = 1; i + 1 < needed.size(); ++i)
       smooth[i] = std::max(needed[i], (needed[i - 1] + 2 * needed[i] + needed[i + 1]) / 4);
-    inferior_[row] = Pchip(forward, smooth);
   });
+  return rows;
+}
+
+/// A hash of everything that the rows depend on.
+std::uint64_t inputs_of(const JointSurfaces& joint, JawSide side,
+                        const CondylarPathTable::Settings& settings) {
+  const auto& [center, axis, gap, longest_mm, widest_shift_mm, largest_theta] = settings;
+  const double numbers[] = {center.x(), center.y(),      center.z(),    axis.x(),
+                            axis.y(),   axis.z(),        gap.seated_mm, gap.front_mm,
+                            longest_mm, widest_shift_mm, largest_theta};
+  return word_hash(numbers, sizeof numbers, joint.hash(side));
+}
+
+}  // namespace
+
+double DiscGap::at(double forward_mm) const {
+  constexpr double thinned_by_mm = 7;  // on the slope of the eminence
+  const double u = std::clamp(forward_mm / thinned_by_mm, 0.0, 1.0);
+  return seated_mm + (front_mm - seated_mm) * u * u * (3 - 2 * u);
+}
+
+CondylarPathTable::CondylarPathTable(const JointSurfaces& joint, JawSide side,
+                                     const Settings& settings, int threads)
+    : theta_(even(0, settings.largest_theta, theta_rows)), shift_{0.0} {
+  const double widest = settings.widest_shift_mm;
+  if (widest > 0) shift_ = even(-widest, widest, shift_rows);
+  const ResultCache results(user_cache_folder(), "condylar-path");
+  const std::uint64_t inputs = inputs_of(joint, side, settings);
+  std::vector<std::vector<double>> rows;
+  bool stored = false;
+  if (const auto bytes = results.read(inputs)) {
+    ArchiveReader reader(*bytes);
+    reader(rows);
+    stored = reader.complete() && rows.size() == theta_.size() * shift_.size();
+  }
+  if (!stored) {
+    rows = find_rows(joint, side, settings, theta_, shift_, threads);
+    ArchiveWriter writer;
+    writer(rows);
+    results.write(inputs, writer.take());
+  }
+  for (const auto& row : rows) {
+    std::vector<double> forward;
+    for (std::size_t i = 0; i < row.size(); ++i)
+      forward.push_back(static_cast<double>(i) * step_mm);
+    inferior_.emplace_back(forward, row);
+  }
 }
 
 double CondylarPathTable::inferior_translation_mm(double forward_mm, double theta,

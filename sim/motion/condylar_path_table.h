@@ -31,7 +31,7 @@ class CondylarPathTable {
     double widest_shift_mm = 0;  // 0: no lateral shift
     double largest_theta = 0.8;  // rad
   };
-  /// Computed on `threads` threads; bit-identical for any number.
+  /// Computed on `threads` threads; bit-identical for any number. Kept in the user's cache folder.
   CondylarPathTable(const JointSurfaces& joint, JawSide side, const Settings& settings,
                     int threads);
 

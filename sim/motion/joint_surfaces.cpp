@@ -4,6 +4,8 @@
 #include <limits>
 #include <utility>
 
+#include "engine/core/user_cache.h"
+
 namespace condyle {
 namespace {
 
@@ -33,6 +35,13 @@ void append_near(const TriMesh& mesh, const Eigen::Vector3d& center, double radi
   }
 }
 
+std::uint64_t hash_of(const TriMesh& mesh, std::uint64_t h) {
+  const std::size_t sizes[] = {mesh.vertices.size(), mesh.triangles.size()};
+  h = word_hash(sizes, sizeof sizes, h);
+  h = word_hash(mesh.vertices.data(), sizes[0] * sizeof mesh.vertices[0], h);
+  return word_hash(mesh.triangles.data(), sizes[1] * sizeof mesh.triangles[0], h);
+}
+
 }  // namespace
 
 std::optional<JointSurfaces> JointSurfaces::find(const Case& patient) {
@@ -48,7 +57,8 @@ std::optional<JointSurfaces> JointSurfaces::find(const Case& patient) {
       if (part.body == cranium_body) append_near(part.mesh, *center, fossa_radius_mm, fossa);
     }
     if (condyle.empty() || fossa.empty()) return std::nullopt;
-    Side side{CollisionMesh(condyle), CollisionMesh(fossa), 0, {}};
+    Side side{CollisionMesh(condyle), CollisionMesh(fossa), 0, 0, {}};
+    side.hash = hash_of(fossa, hash_of(condyle, hash_start));
     const MeshDistance rest = distance(side.fossa, {}, side.condyle, {});
     if (rest.distance_mm < min_gap_mm || rest.distance_mm > largest_gap_mm) return std::nullopt;
     side.rest_gap_mm = rest.distance_mm;

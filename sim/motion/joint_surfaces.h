@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -23,6 +24,8 @@ class JointSurfaces {
   /// Smaller rest gap of the two sides, mm.
   double rest_gap_mm() const;
   double rest_gap_mm(JawSide side) const { return at(side).rest_gap_mm; }
+  /// A hash of the two surfaces of one side.
+  std::uint64_t hash(JawSide side) const { return at(side).hash; }
 
   /// Smallest over the sides of (gap at X_CM - gap at rest), mm. Moving the mandible by d changes
   /// it by at most d.
@@ -35,6 +38,7 @@ class JointSurfaces {
   struct Side {
     CollisionMesh condyle, fossa;
     double rest_gap_mm = 0;
+    std::uint64_t hash = 0;
     TrianglePair last;  // start of the next query
   };
   const Side& at(JawSide side) const { return sides_[side == JawSide::left ? 0 : 1]; }
