@@ -13,4 +13,8 @@ struct EyePieces {
 };
 EyePieces part_lashes(const TriMesh& mesh);
 
+constexpr float thickest_lash_mm = 0.25f;  // its mean radius
+/// Mean radius of the lash that each vertex belongs to, mm; 0 for the others.
+std::vector<float> lash_radii(const TriMesh& mesh);
+
 }  // namespace condyle

@@ -7,6 +7,7 @@
 #include "engine/core/hash.h"
 #include "engine/core/user_cache.h"
 #include "engine/mesh/triangle_tree.h"
+#include "render/face/lashes.h"
 #include "render/face/shade_layers.h"
 #include "render/face/skin_folds.h"
 #include "render/mesh/ambient_occlusion.h"
@@ -50,6 +51,25 @@ Eigen::Vector3f mottled(const Eigen::Vector3f& color, const Eigen::Vector3f& p) 
                                             1 - 0.026f * blood + 0.018f * grain));
 }
 
+/// Mean colour of a face's skin about the lashes, sRGB; none without.
+std::optional<Eigen::Vector3f> skin_about(const TriMesh& eyes, std::span<const float> lash_radius,
+                                          const TriMesh* face) {
+  constexpr double about_mm = 3;
+  if (!face || face->colors.size() != face->vertices.size()) return std::nullopt;
+  Eigen::AlignedBox3d box;
+  for (std::size_t v = 0; v < lash_radius.size(); ++v)
+    if (lash_radius[v] > 0) box.extend(eyes.vertices[v]);
+  if (box.isEmpty()) return std::nullopt;
+  box.extend(Eigen::Vector3d(box.min().array() - about_mm));
+  box.extend(Eigen::Vector3d(box.max().array() + about_mm));
+  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+  float count = 0;
+  for (std::size_t v = 0; v < face->vertices.size(); ++v)
+    if (box.contains(face->vertices[v])) sum += face->colors[v], ++count;
+  if (count == 0) return std::nullopt;
+  return Eigen::Vector3f(sum / count);
+}
+
 struct Prepared {
   std::vector<Eigen::Vector3f> positions, normals;
 };
@@ -73,6 +93,8 @@ std::vector<Drawable> make_drawables(std::span<const Part* const> parts, const M
   const auto occlusion =
       stored_occlusion(user_cache_folder(), surfaces, occlusion_directions, bake_threads);
 
+  const auto face = std::find_if(parts.begin(), parts.end(),
+                                 [](const Part* part) { return part->role == Role::face; });
   std::vector<Drawable> drawables;
   drawables.reserve(parts.size());
   for (std::size_t p = 0; p < parts.size(); ++p) {
@@ -94,6 +116,8 @@ std::vector<Drawable> make_drawables(std::span<const Part* const> parts, const M
     const auto material = material_of(part.role);
     std::vector<float> curvature;
     if (part.role == Role::face) curvature = vertex_curvature(positions, triangles, normals);
+    std::vector<float> lash_radius(positions.size(), 0);
+    if (part.role == Role::eyes) lash_radius = lash_radii(part.mesh);
     std::vector<GpuMesh::Bytes> colors(positions.size()), extras(positions.size());
     Eigen::AlignedBox3f box;
     for (std::size_t i = 0; i < positions.size(); ++i) {
@@ -107,7 +131,7 @@ std::vector<Drawable> make_drawables(std::span<const Part* const> parts, const M
                    to_byte(occlusion[p].together[i])};
       extras[i] = {to_byte(occlusion[p].alone[i]),
                    to_byte(curvature.empty() ? 0.f : curvature[i] / SkinTable::max_curvature),
-                   to_byte(gloss), 0};
+                   to_byte(gloss), to_byte(lash_radius[i] / thickest_lash_mm)};
     }
     GpuMesh mesh(positions, triangles, moving);
     mesh.add_coarse(positions, triangles);
@@ -127,6 +151,9 @@ std::vector<Drawable> make_drawables(std::span<const Part* const> parts, const M
                          std::move(coarse_edges)});
     drawables.back().own = std::move(own);
     drawables.back().uneven = std::move(uneven);
+    if (part.role == Role::eyes)
+      drawables.back().behind_lashes =
+          skin_about(part.mesh, lash_radius, face == parts.end() ? nullptr : &(*face)->mesh);
     if (!mouth_rim.empty())
       drawables.back().folds = std::make_shared<const SkinFolds>(
           positions, normals, drawables.back().triangles(), mouth_rim);
@@ -153,6 +180,7 @@ std::vector<Drawable> drawables_like(std::span<const Drawable> others) {
                          other.coarse_edges});
     drawables.back().own = other.own;
     drawables.back().uneven = other.uneven;
+    drawables.back().behind_lashes = other.behind_lashes;
     drawables.back().folds = other.folds;
   }
   return drawables;

@@ -29,6 +29,8 @@ struct Drawable {
   std::vector<GpuMesh::Bytes> colors, extras;       // at rest, one per vertex
   std::optional<SurfaceEdges> edges, coarse_edges;  // of a face only, for occlusion culling
 
+  /// sRGB, of the skin around the lashes of an eyes part; none without.
+  std::optional<Eigen::Vector3f> behind_lashes = {};
   bool mapped = false;                // coloured by its values
   std::optional<GpuMesh> finer = {};  // drawn instead while it is mapped
   std::size_t finer_vertices = 0;

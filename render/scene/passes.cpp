@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "render/face/lashes.h"
 #include "render/shaders/skin_detail.h"
 #include "render/shaders/skin_table.h"
 
@@ -207,6 +208,15 @@ void Passes::place(GlProgram& program, const DrawItem& item, const PictureView& 
   const bool in_mouth = view.dark_mouth && item.role() != Role::eyes && !is_piece(item.role());
   program.set("cavity", Eigen::Vector2f(view.lips_y, in_mouth ? 1 / mouth_depth_mm : 0.f));
   program.set("window_ball", view.window_ball);
+  // Thinner lashes would be drawn as dots. Several samples need no help; where lashes are seen
+  // through, their depths are drawn by another program.
+  constexpr float least_pixels = 0.5f;  // radius
+  const auto& skin = item.drawable->behind_lashes;
+  const bool grow = skin && view.one_sample && item.opaque();
+  program.set("lashes", grow
+                            ? Eigen::Vector2f(thickest_lash_mm, least_pixels / view.pixels_per_unit)
+                            : Eigen::Vector2f::Zero());
+  if (grow) program.set("behind_lashes", *skin);
   begin_cut(program, item, view);
 }
 

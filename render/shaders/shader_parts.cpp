@@ -39,7 +39,8 @@ const char* const vertex_source = R"(
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec4 color;  // sRGB, occlusion with everything at rest
-layout(location = 3) in vec4 extra;  // occlusion by its own body, curvature, gloss, fraction of lip
+// occlusion by its own body, curvature, gloss, fraction of lip; of eyes: radius of a lash
+layout(location = 3) in vec4 extra;
 layout(location = 4) in float value;  // value of a colour map
 layout(location = 5) in vec3 rest;  // position at rest; of skin
 uniform mat4 model;            // rigid
@@ -51,6 +52,8 @@ uniform float together;  // 1 with everything at rest, 0 far from it
 uniform vec2 cavity;           // y where the mouth's darkness starts, 1/length; 0 length = none
 uniform vec4 clip_plane;  // kept: dot(plane, position) > 0
 uniform vec4 cut_ball;  // centre and radius; the outside is kept
+uniform vec2 lashes;  // mm of a radius of 1; least radius at distance 1, mm; 0: as they are
+uniform vec3 behind_lashes;  // sRGB
 uniform vec4 window_ball;  // the same, of the skin: the mouth's darkness is not applied through it
 out float gl_ClipDistance[2];
 invariant gl_Position;
@@ -65,12 +68,16 @@ void main() {
   mapped_value = value;
   rest_place = rest;
   vec4 world = model * vec4(position, 1.0);
+  world_normal = mat3(model) * normal;
+  // A lash thinner than a pixel is drawn as wide, with as much of the skin's colour.
+  float radius = lashes.x * extra.w;
+  float thin = radius > 0.0 ? max(lashes.y * distance(eye, world.xyz) - radius, 0.0) : 0.0;
+  world.xyz += thin * world_normal;
   gl_Position = view_projection * world;
   gl_ClipDistance[0] = dot(clip_plane, world);
   gl_ClipDistance[1] = distance(world.xyz, cut_ball.xyz) - cut_ball.w;
   to_eye = eye - world.xyz;
-  world_normal = mat3(model) * normal;
-  albedo = pow(color.rgb, vec3(2.2));
+  albedo = pow(mix(color.rgb, behind_lashes, thin / max(radius + thin, 1e-6)), vec3(2.2));
   shadow_place = (shadow_matrix * vec4(world.xyz + shade_offset(world_normal, key_direction, to_eye,
                                                                 two_sided, extra.z), 1.0)).xyz;
   vec3 offset = window_ball.xyz - eye;

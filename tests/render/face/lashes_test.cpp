@@ -1,6 +1,8 @@
 // Lashes are part of the eyes' mesh, but they grow from the skin.
 #include "render/face/lashes.h"
 
+#include <numbers>
+
 #include "tests/render/scene_fixture.h"
 
 namespace condyle {
@@ -49,6 +51,51 @@ TEST(LashPieces, AreTheClosedStrandsAloneWhateverElseIsThin) {
   for (const auto& t : cornea.triangles) mesh.triangles.push_back(t.array() + next);
   EXPECT_EQ(part_lashes(mesh).lashes.size(), strand);
   EXPECT_EQ(part_lashes(mesh).eyes.size(), eye + 2 + cornea.triangles.size());
+}
+
+TEST(LashRadii, AreTheStrandsOwn) {
+  TriMesh mesh = eye_with_lash();
+  const std::vector<float> radii = lash_radii(mesh);
+  const std::size_t eye = ball({0, 0, 0}, 8).vertices.size();
+  ASSERT_EQ(radii.size(), mesh.vertices.size());
+  // The mean radius of a long ellipsoid over its surface: 2 V / A = 8 / (3 pi) r.
+  for (std::size_t v = 0; v < radii.size(); ++v)
+    EXPECT_NEAR(radii[v], v < eye ? 0 : 0.23 * 8 / (3 * std::numbers::pi), 0.02);
+}
+
+TEST_F(Lashes, ThinnerThanAPixelAreDrawnWithoutGapsAndPaler) {
+  // An oblique lash of 0.12 mm across, beside a spot of skin, in pixels of 1 mm.
+  TriMesh eyes = ball({0, -30, 0}, 4);
+  const TriMesh strand = ball({0, 0, 0}, 1, 16);
+  const int first = static_cast<int>(eyes.vertices.size());
+  for (const auto& v : strand.vertices)
+    eyes.vertices.push_back({0.06 * v.x() + 6 * v.z() + 14, -48 + 0.06 * v.y(), 15 * v.z() + 30});
+  for (const auto& t : strand.triangles) eyes.triangles.push_back(t.array() + first);
+  std::vector<Part> parts = {make_part("eyes", Role::eyes, eyes),
+                             make_part("face", Role::face, ball({14, -48, 12}, 2))};
+  parts[0].mesh.colors.assign(eyes.vertices.size(), {0.02f, 0.02f, 0.02f});
+  parts[1].mesh.colors.assign(parts[1].mesh.vertices.size(), {0.8f, 0.6f, 0.5f});
+  SceneRenderer renderer(parts);
+  auto settings = mask_settings();
+  settings.samples = 1;
+  settings.shadows = false;
+  const Image image = renderer.picture(front_camera(200), settings);
+  int gaps = 0, brightest = 0, skin = 0;
+  for (int y = 60; y < 80; ++y) {
+    int most = 0;
+    for (int x = 105; x < 125; ++x)
+      if (const Pixel p = pixel(image, x, y); p.a > most) {
+        most = p.a;
+        brightest = std::max<int>(brightest, p.r);
+      }
+    gaps += most < 255;
+  }
+  for (int y = 84; y < 92; ++y)
+    for (int x = 105; x < 125; ++x) skin = std::max<int>(skin, pixel(image, x, y).r);
+  EXPECT_EQ(gaps, 0);
+  EXPECT_GT(skin, 120);
+  EXPECT_GT(brightest, 0.4 * skin);
+  EXPECT_LT(brightest, 1.1 * skin);
 }
 
 TEST_F(Lashes, FollowTheSkin) {
