@@ -54,7 +54,7 @@ void CutPreviewSession::preview(const Plan& plan, const std::optional<PlanEdit>&
     return start_waiting();
   }
   state_.cut_overlay.reset();
-  if (std::exchange(state_.scene.plan.preview, std::nullopt)) state_.show_plan();
+  if (std::exchange(state_.scene.plan.preview, std::nullopt)) state_.show_changes();
 }
 
 void CutPreviewSession::show_handles(const Plan& plan, int step) {
@@ -63,7 +63,7 @@ void CutPreviewSession::show_handles(const Plan& plan, int step) {
   if (step != state_.scene.plan.handles_of) {
     state_.scene.plan.handles.clear();
     state_.scene.plan.handles_of = 0;
-    state_.show_plan();
+    state_.show_changes();
   }
   if (step == 0) return;
   handles_ = Work{plan, std::nullopt, step};

@@ -353,7 +353,7 @@ bool PlanSession::take_splint() {
 void PlanSession::hide_splint() {
   state_.splint.reset();
   state_.scene.plan.splint_findings.clear();
-  state_.show_plan();
+  state_.show_changes();
 }
 
 void PlanSession::renew_handles() {

@@ -39,8 +39,8 @@ struct SessionState {
   CaseGeometry geometry = {};          // of the patient before the operation
   std::filesystem::path session = {};  // its own file; empty: not saved
 
-  /// Shows what has changed of the scene's plan; the requested motion stays.
-  void show_plan() {
+  /// Shows what has changed of the scene; the requested motion stays.
+  void show_changes() {
     scene.motion = front_end.view().motion;
     front_end.update_scene(scene);
   }

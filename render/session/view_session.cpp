@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <utility>
+#include <variant>
 
 #include "engine/core/error.h"
 #include "render/recording/distance_drawing.h"
@@ -276,13 +277,50 @@ WindowScene ViewSession::scene_of_patient() const {
   return scene;
 }
 
-void ViewSession::show_scene() {
+/// A sentence on muscles that the sliders of the face excite and the patient lacks; empty: none.
+std::string ViewSession::lacking_muscles() const {
+  const auto& expression = state_.front_end.view().expression;
+  if (expression.empty() || state_.scene.expressions.empty() || !state_.patient->scene.tissue)
+    return {};
+  return missing_kinds(expression, face_muscles_of(*state_.patient->scene.tissue));
+}
+
+/// Sentences on expression, motion, soft tissue, contact and patient: what changed last comes
+/// first.
+std::vector<std::string> ViewSession::notes() const {
   const Scene& scene = state_.patient->scene;
+  std::vector<std::string> notes;
+  const auto add = [&notes](const std::vector<std::string>& more) {
+    notes.insert(notes.end(), more.begin(), more.end());
+  };
+  if (state_.motion) add(state_.motion->motion.notes);
+  if (!lacking_muscles_.empty() &&
+      std::find(notes.begin(), notes.end(), lacking_muscles_) == notes.end())
+    notes.insert(notes.begin(), lacking_muscles_);
+  // As on the terminal, those on the mesh of the built-in patient's tissue are left out.
+  if (scene.tissue && !std::holds_alternative<BuiltInSource>(state_.source))
+    for (const std::string& note : summary(*scene.tissue).notes)
+      notes.push_back("soft tissue: " + note);
+  add(scene.contacts.notes());
+  add(scene.patient.notes);
+  for (std::string& note : notes) note = state_.in_words(std::move(note));
+  return notes;
+}
+
+/// The notes after a slider of the face was moved.
+void ViewSession::follow_expression() {
+  if (!state_.patient) return;
+  std::string lacking = lacking_muscles();
+  if (lacking == lacking_muscles_) return;
+  lacking_muscles_ = std::move(lacking);
+  state_.scene.notes = notes();
+  state_.show_changes();
+}
+
+void ViewSession::show_scene() {
   WindowScene& shown = state_.scene;
   shown.recent = recent_.list();
-  shown.notes = scene.patient.notes;
-  const auto& contact_notes = scene.contacts.notes();
-  shown.notes.insert(shown.notes.end(), contact_notes.begin(), contact_notes.end());
+  lacking_muscles_ = lacking_muscles();
   shown.motion = asked_;
   if (state_.motion) {
     const Motion& motion = state_.motion->motion;
@@ -292,9 +330,8 @@ void ViewSession::show_scene() {
     shown.max_opening_mm = state_.motion->widest_mm;
     shown.motion_settings = state_.motion->settings;
     shown.excitations = state_.motion->excitations;
-    shown.notes.insert(shown.notes.end(), motion.notes.begin(), motion.notes.end());
   }
-  for (std::string& note : shown.notes) note = state_.in_words(std::move(note));
+  shown.notes = notes();
   state_.front_end.update_scene(shown);
 }
 
@@ -402,8 +439,9 @@ void ViewSession::turn() {
   const bool has_splint = plan_.take_splint();
   if (has_splint) state_.scene.plan = plan_.view();
   const bool has_preview = plan_.take_preview(), moved_by_hand = plan_.follow_hand();
-  if (has_preview || has_splint || moved_by_hand) state_.show_plan();
+  if (has_preview || has_splint || moved_by_hand) state_.show_changes();
   extend_face(view);
+  follow_expression();
   if (state_.patient && !loader_.job().active() && !(view.motion == asked_))
     want_motion(view.motion);
   take_motion();

@@ -89,6 +89,9 @@ class ViewSession {
   WindowScene scene_of_patient() const;
   void use_clinical_axes(std::vector<MovableBody>& bodies) const;
   void show_scene();  // again, after changes
+  std::string lacking_muscles() const;
+  std::vector<std::string> notes() const;
+  void follow_expression();
   void show_progress();
 
   /// A part of the patient before an edit of its plan.
@@ -112,6 +115,7 @@ class ViewSession {
   CtImport ct_;
   PlanSession plan_;
   Job<std::shared_ptr<const SessionMotion>> moving_;
+  std::string lacking_muscles_;      // as noted of the sliders of the face
   bool motion_lifts_brows_ = false;  // the present motion, see TissueSettings::upper_face
   std::shared_ptr<const SessionPatient> face_asked_for_;  // when the upper face was added
   Job<bool> readying_;                                    // bones to slide

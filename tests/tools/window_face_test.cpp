@@ -1,8 +1,46 @@
 // The face's expression by the sliders of the window, and by a motion in words.
+#include <algorithm>
+#include <sstream>
+
+#include "engine/mesh_io/mesh_files.h"
 #include "window_session.h"
 
 namespace condyle::test {
 namespace {
+
+/// A case of the built-in patient's surfaces whose face ends below the eyes, which nothing marks.
+void write_patient_without_eyes(const Folder& folder) {
+  ASSERT_EQ(condyle({"sample", "--out", folder / "sample"}).code, 0);
+  constexpr double below_eyes_mm = 6;
+  const TriMesh skin = read_mesh(folder / "sample/skin.ply");
+  TriMesh lower{skin.vertices, {}, {}};
+  std::copy_if(skin.triangles.begin(), skin.triangles.end(), std::back_inserter(lower.triangles),
+               [&](const Eigen::Vector3i& t) {
+                 return std::all_of(t.begin(), t.end(), [&](int v) {
+                   return skin.vertices[static_cast<std::size_t>(v)].z() < below_eyes_mm;
+                 });
+               });
+  ASSERT_LT(lower.triangles.size(), skin.triangles.size());
+  write_stl(lower, folder / "lower.stl");
+  std::istringstream marks(read_text(folder / "sample/marks.csv"));
+  std::string kept;
+  for (std::string line; std::getline(marks, line);)
+    if (line.find("canthion") == std::string::npos && line.find("eyeball") == std::string::npos)
+      kept += line + "\n";
+  write_text(folder / "marks.csv", kept);
+  const Outcome made =
+      condyle({"import", "meshes", "--skull", folder / "sample/skull.stl", "--mandible",
+               folder / "sample/jaw.stl", "--upper-teeth", folder / "sample/upper.stl",
+               "--lower-teeth", folder / "sample/lower.stl", "--face", folder / "lower.stl",
+               "--landmarks", folder / "marks.csv", "--out", folder / "case"});
+  ASSERT_EQ(made.code, 0) << made.err;
+}
+
+int notes_with(const Json& state, const std::string& words) {
+  int count = 0;
+  for (const std::string note : state["notes"]) count += note.find(words) != std::string::npos;
+  return count;
+}
 
 TEST_F(WindowSession, SlidersMoveTheLiveFaceAndAreSavedWithTheSession) {
   start({"--motion", "smile 0.5 over 0.3; hold 1"});
@@ -81,6 +119,34 @@ TEST_F(WindowSession, ABrowSliderAddsTheUpperFaceToTheSoftTissue) {
       << state()["edits"]["expression"].dump();
   ASSERT_TRUE(wait_until([](const Json& s) { return s["picture_finished"] == true; }, 60));
   EXPECT_GT(see("surprise"), 0.003);
+  EXPECT_EQ(state().value("trouble", ""), "");
+  EXPECT_TRUE(press("ctrl+q"));
+  EXPECT_EQ(wait_for_end(), 0);
+}
+
+TEST_F(WindowSession, NotesSayWhyBrowsDoNotMoveAndWhichMusclesAreMissing) {
+  write_patient_without_eyes(folder_);
+  start({folder_ / "case", "--motion", "rest"});
+  ASSERT_TRUE(wait_until(idle, 120)) << state().value("trouble", "");
+  const std::string still = "brows and forehead do not move",
+                    lacking = "surprise: the patient lacks muscles of the kinds frontalis";
+  EXPECT_EQ(notes_with(state(), still), 0);
+  EXPECT_EQ(notes_with(state(), lacking), 0);
+  click("tab:Face");
+  ASSERT_TRUE(wait_for_item("expression:surprise:right"));
+  const auto r = rect("expression:surprise:right");
+  drag(r[0] + 0.03 * r[2], r[1] + r[3] / 2, r[0] + 0.6 * r[2], r[1] + r[3] / 2);
+  EXPECT_TRUE(wait_until([&](const Json& s) {
+    return idle(s) && notes_with(s, still) == 1 && notes_with(s, lacking) == 1;
+  })) << state()["notes"].dump();
+  EXPECT_EQ(state()["notes"][0].get<std::string>().find(lacking), 0u) << "the last change is first";
+  see("notes");
+  click("expression-relax");
+  EXPECT_TRUE(wait_until([&](const Json& s) { return notes_with(s, lacking) == 0; }))
+      << "the face is relaxed: " << state()["notes"].dump();
+  EXPECT_TRUE(press("ctrl+z"));
+  EXPECT_TRUE(wait_until([&](const Json& s) { return notes_with(s, lacking) == 1; }));
+  EXPECT_EQ(notes_with(state(), still), 1);
   EXPECT_EQ(state().value("trouble", ""), "");
   EXPECT_TRUE(press("ctrl+q"));
   EXPECT_EQ(wait_for_end(), 0);
