@@ -187,7 +187,8 @@ float flesh(const Muscle& muscle, double s) {
 
 }  // namespace
 
-MuscleBellies::MuscleBellies(std::vector<Muscle> muscles, const Case& patient)
+MuscleBellies::MuscleBellies(std::vector<Muscle> muscles, const Case& patient,
+                             const Progress& progress)
     : muscles_(std::move(muscles)) {
   if (muscles_.empty()) return;
   const auto bones = bones_near(muscles_, patient);
@@ -196,6 +197,8 @@ MuscleBellies::MuscleBellies(std::vector<Muscle> muscles, const Case& patient)
     midline +=
         0.5 * (muscle.origin.x() + muscle.insertion.x()) / static_cast<double>(muscles_.size());
   for (const Muscle& muscle : muscles_) {
+    report(progress, "shaping the muscles",
+           static_cast<double>(bellies_.size()) / static_cast<double>(muscles_.size()));
     const BellyShape shape = belly_shape(muscle.kind);
     const Frame f = frame_of(muscle, shape, midline);
     const Bends bends = bends_of(f, shape, bones);

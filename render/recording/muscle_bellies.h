@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/core/progress.h"
 #include "render/overlay/overlays.h"
 #include "render/scene/shown_overlays.h"
 #include "sim/case/case.h"
@@ -18,7 +19,7 @@ namespace condyle {
 class MuscleBellies {
  public:
   /// Shapes all of them at rest; some tenths of a second.
-  MuscleBellies(std::vector<Muscle> muscles, const Case& patient);
+  MuscleBellies(std::vector<Muscle> muscles, const Case& patient, const Progress& progress = {});
 
   const std::vector<Muscle>& muscles() const { return muscles_; }
 

@@ -76,11 +76,14 @@ void LiveSession::update(const ViewState& view, const std::optional<Pose>& X_CM_
   request(view, X_CM_released);
   const bool is_new = take_frame(view);
   if (!state_.newest) return state_.front_end.draw();
-  const OverlayInputs inputs = OverlayInputs::of(view, paths);
+  std::shared_ptr<const MuscleBellies> bellies;
+  state_.try_or_report("Cannot draw the muscles",
+                       [&] { bellies = bellies_.of(state_.patient, view); });
+  const OverlayInputs inputs = OverlayInputs::of(view, paths, bellies);
   const SessionOverlayInputs own = SessionOverlayInputs::of(state_, view);
   if (is_new || inputs != overlaid_ || !(own == overlaid_by_session_)) {
     Overlays shown = view_overlays(*state_.patient, state_.motion->motion, *state_.newest, view,
-                                   paths, bellies_.of(state_.patient, view));
+                                   paths, bellies.get());
     add_session_overlays(state_, view, shown);
     state_.front_end.show_overlays(std::move(shown));
     overlaid_ = inputs;

@@ -5,6 +5,7 @@
 
 #include "render/session/session_overlays.h"
 #include "render/session/session_state.h"
+#include "render/session/shown_bellies.h"
 #include "render/session/view_overlays.h"
 #include "sim/contact/live_distances.h"
 #include "sim/simulator/live.h"
@@ -15,7 +16,8 @@ namespace condyle {
 /// end with overlays and colours.
 class LiveSession {
  public:
-  explicit LiveSession(SessionState& state) : state_(state) {}
+  explicit LiveSession(SessionState& state)
+      : state_(state), bellies_(state.retired, state.waker()) {}
 
   /// Simulates the session's patient along its motion, from rest.
   void start();

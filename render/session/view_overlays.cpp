@@ -66,16 +66,9 @@ std::optional<Eigen::Hyperplane<double, 3>> midsagittal_plane(const SessionPatie
   }
 }
 
-const MuscleBellies* ShownBellies::of(const std::shared_ptr<const SessionPatient>& patient,
-                                      const ViewState& view) {
-  if (std::none_of(view.muscles.begin(), view.muscles.end(),
-                   [](const PartView& muscle) { return muscle.shown; }))
-    return nullptr;
-  if (patient_ != patient) {
-    patient_ = patient;
-    bellies_.emplace(patient->muscles, patient->scene.patient);
-  }
-  return &*bellies_;
+bool shows_muscles(const ViewState& view) {
+  return std::any_of(view.muscles.begin(), view.muscles.end(),
+                     [](const PartView& muscle) { return muscle.shown; });
 }
 
 Overlays view_overlays(const SessionPatient& patient, const Motion& motion, const FrameState& frame,

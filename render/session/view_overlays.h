@@ -13,21 +13,11 @@
 
 namespace condyle {
 
-/// Bellies of the muscles of the patient that is shown, shaped when they are first drawn.
-class ShownBellies {
- public:
-  /// Null while the view shows no muscle.
-  const MuscleBellies* of(const std::shared_ptr<const SessionPatient>& patient,
-                          const ViewState& view);
-
- private:
-  std::shared_ptr<const SessionPatient> patient_ = {};
-  std::optional<MuscleBellies> bellies_ = {};
-};
+bool shows_muscles(const ViewState& view);
 
 /// Overlays of a view at one frame: axes, paths of the motion, elements of the tissue, muscles,
-/// the mirror image of a part. `paths`: of incisor and condyles; none: not known yet. `bellies`: as
-/// ShownBellies gives them.
+/// the mirror image of a part. `paths`: of incisor and condyles; none: not known yet. `bellies`: of
+/// its muscles; null: none are drawn.
 Overlays view_overlays(const SessionPatient& patient, const Motion& motion, const FrameState& frame,
                        const ViewState& view, const std::shared_ptr<const LineSet>& paths,
                        const MuscleBellies* bellies);
@@ -39,13 +29,15 @@ struct OverlayInputs {
   std::vector<PartView> muscles = {}, layers = {};
   std::string mirrored = {};
   std::shared_ptr<const LineSet> known_paths = {};
+  std::shared_ptr<const MuscleBellies> bellies = {};
   bool operator==(const OverlayInputs&) const = default;
 
-  static OverlayInputs of(const ViewState& view, std::shared_ptr<const LineSet> paths) {
+  static OverlayInputs of(const ViewState& view, std::shared_ptr<const LineSet> paths,
+                          std::shared_ptr<const MuscleBellies> bellies = {}) {
     const Look& look = view.look;
     return {look.springs, look.prisms,         look.bone_springs,  look.axes,
             look.paths,   look.facial_muscles, look.muscle_labels, view.muscles,
-            view.layers,  look.mirrored,       std::move(paths)};
+            view.layers,  look.mirrored,       std::move(paths),   std::move(bellies)};
   }
 };
 

@@ -93,7 +93,7 @@ std::uint64_t shown_hash(const ViewRecording& subject, const PicturePlan& plan) 
   }
   const auto overlaid = OverlayInputs::of(subject.view, subject.paths);
   const auto& [springs, prisms, bone_springs, axes, paths, facial_muscles, muscle_labels, muscles,
-               layers, mirrored, known] = overlaid;
+               layers, mirrored, known, bellies] = overlaid;
   shown["overlays"] = {{springs, prisms, bone_springs, axes, paths, facial_muscles, muscle_labels},
                        {parts(muscles), parts(layers), mirrored}};
   if (paths && known)
@@ -117,10 +117,13 @@ PicturePlan plan_of(const ViewRecording& subject) {
   plan.before = record.kept;
   plan.operation = record.before;
   plan.window = WindowPicture{.camera = record.camera, .upright = record.upright};
-  plan.window->overlays = [&subject,
-                           bellies = std::make_shared<ShownBellies>()](const FrameState& frame) {
-    return view_overlays(*subject.patient, subject.motion->motion, frame, subject.view,
-                         subject.paths, bellies->of(subject.patient, subject.view));
+  plan.window->overlays = [&subject, bellies = std::shared_ptr<const MuscleBellies>()](
+                              const FrameState& frame) mutable {
+    const SessionPatient& patient = *subject.patient;
+    if (!bellies && shows_muscles(subject.view))
+      bellies = std::make_shared<const MuscleBellies>(patient.muscles, patient.scene.patient);
+    return view_overlays(patient, subject.motion->motion, frame, subject.view, subject.paths,
+                         bellies.get());
   };
   if (look.wipe) plan.wipe = look.wipe_at;
   if (subject.view.distances) plan.map = SurfaceMap::distance;
