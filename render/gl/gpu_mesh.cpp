@@ -132,11 +132,14 @@ void GpuMesh::send_ordered(GLuint buffer, std::span<const T> values, GLenum usag
 }
 
 GpuMesh::GpuMesh(std::span<const Eigen::Vector3f> positions,
-                 std::span<const Eigen::Vector3i> triangles, bool moving)
-    : fine_(surface_of(
-          stored_patches("patches", positions, triangles,
-                         [&] { return cut_into_patches(positions, triangles, piece_triangles); }))),
-      usage_(moving ? GL_STREAM_DRAW : GL_STATIC_DRAW) {
+                 std::span<const Eigen::Vector3i> triangles, Use use)
+    : usage_(use == Use::still ? GL_STATIC_DRAW : GL_STREAM_DRAW) {
+  if (use == Use::overlay)
+    fine_.triangles.assign(triangles.begin(), triangles.end());
+  else
+    fine_ = surface_of(stored_patches("patches", positions, triangles, [&] {
+      return cut_into_patches(positions, triangles, piece_triangles);
+    }));
   // Vertices in the order of their first use: without a GPU a few hundred neighbours are cached at
   // a time, and evicted ones are computed again.
   card_vertex_.assign(positions.size(), -1);

@@ -47,9 +47,12 @@ class GpuMesh {
     Eigen::AlignedBox3f box = {};  // around all pieces
   };
 
-  /// `moving`: positions and normals are sent again each frame.
+  /// `still` and `moving`: from its shape at rest, whose pieces are stored on disk; positions and
+  /// normals of a moving one are sent again each frame. `overlay`: moving, from any shape; has no
+  /// pieces.
+  enum class Use { still, moving, overlay };
   GpuMesh(std::span<const Eigen::Vector3f> positions, std::span<const Eigen::Vector3i> triangles,
-          bool moving);
+          Use use);
 
   /// The same triangles in another context; shape and colours have to be sent.
   GpuMesh twin() const;

@@ -111,7 +111,7 @@ std::vector<Drawable> make_drawables(std::span<const Part* const> parts, const M
     even_rim(positions, uneven);
     const auto& triangles = own.empty() ? part.mesh.triangles : own;
     if (!own.empty()) vertex_normals(positions, triangles, normals);
-    const bool moving = !is_rigid(part.role);
+    const auto use = is_rigid(part.role) ? GpuMesh::Use::still : GpuMesh::Use::moving;
     const bool own_colors = part.mesh.colors.size() == positions.size();
     const auto material = material_of(part.role);
     std::vector<float> curvature;
@@ -133,7 +133,7 @@ std::vector<Drawable> make_drawables(std::span<const Part* const> parts, const M
                    to_byte(curvature.empty() ? 0.f : curvature[i] / SkinTable::max_curvature),
                    to_byte(gloss), to_byte(lash_radius[i] / thickest_lash_mm)};
     }
-    GpuMesh mesh(positions, triangles, moving);
+    GpuMesh mesh(positions, triangles, use);
     mesh.add_coarse(positions, triangles);
     mesh.send_shape(positions, normals);
     mesh.send_colors(colors);
@@ -193,7 +193,7 @@ Drawable piece_of(const Drawable& whole, std::span<const Eigen::Vector3i> triang
   Eigen::AlignedBox3f box;
   for (const auto& t : triangles)
     for (const int v : t) box.extend(positions[static_cast<std::size_t>(v)]);
-  GpuMesh mesh(positions, triangles, false);
+  GpuMesh mesh(positions, triangles, GpuMesh::Use::still);
   mesh.send_shape(positions, normals);
   mesh.send_colors(whole.colors);
   mesh.send_extras(whole.extras);
@@ -216,7 +216,7 @@ void Drawable::set_finer(const TriMesh& surface, std::span<const Eigen::Vector3f
   positions.reserve(surface.vertices.size());
   for (const auto& v : surface.vertices) positions.push_back(v.cast<float>());
   finer_vertices = positions.size();
-  finer.emplace(positions, surface.triangles, false);
+  finer.emplace(positions, surface.triangles, GpuMesh::Use::still);
   finer->send_shape(positions, normals);
   // A map is not shaded by these, but the driver reads them.
   const std::vector<GpuMesh::Bytes> none(positions.size());
@@ -264,7 +264,7 @@ const GpuMesh& Drawable::rest_mesh() {
     for (const auto& v : part->mesh.vertices) positions.push_back(v.cast<float>());
     even_rim(positions, uneven);
     vertex_normals(positions, triangles(), normals);
-    at_rest.emplace(positions, triangles(), false);
+    at_rest.emplace(positions, triangles(), GpuMesh::Use::still);
     at_rest->send_shape(positions, normals);
     at_rest->send_colors(colors);
     at_rest->send_extras(extras);

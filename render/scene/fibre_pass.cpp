@@ -12,7 +12,7 @@ void OverlayPasses::set_body(const std::string& name, const FibreBody& body) {
   }
   auto& kept = bodies_[name];
   if (!kept.mesh || kept.body.triangles != body.triangles) {
-    kept.mesh.emplace(body.positions, body.triangles, true);
+    kept.mesh.emplace(body.positions, body.triangles, GpuMesh::Use::overlay);
     kept.mesh->send_extras(std::vector<GpuMesh::Bytes>(body.positions.size()));
     kept.body = {};
   }

@@ -66,7 +66,7 @@ MouthCavity::MouthCavity(const MouthLining& lining, const Drawable& face) : lini
     colors[v] = {to_byte(color.x()), to_byte(color.y()), to_byte(color.z()), seen};
     extras[v] = {seen, 0, 255, to_byte(lip)};
   }
-  GpuMesh mesh(lining_.rest, lining_.triangles, true);
+  GpuMesh mesh(lining_.rest, lining_.triangles, GpuMesh::Use::moving);
   Eigen::AlignedBox3f box;
   for (const auto& place : lining_.rest) box.extend(place);
   drawable_.emplace(Drawable{&part_,

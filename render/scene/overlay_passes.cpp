@@ -72,7 +72,7 @@ void OverlayPasses::set_sheet(const std::string& name, const GlassSheet& sheet) 
   auto& kept = sheets_[name];
   if (!kept.mesh || kept.triangles != sheet.triangles) {
     kept.triangles = sheet.triangles;
-    kept.mesh.emplace(sheet.positions, sheet.triangles, true);
+    kept.mesh.emplace(sheet.positions, sheet.triangles, GpuMesh::Use::overlay);
     // The tint has its own colour, but the driver reads these.
     const std::vector<GpuMesh::Bytes> none(sheet.positions.size());
     kept.mesh->send_colors(none);

@@ -95,7 +95,7 @@ GpuMesh prism(const std::vector<Vector2f>& outline, const Eigen::Affine3f& place
     add(0, i, next);
     add(n, n + next, n + i);
   }
-  return GpuMesh(positions, triangles, false);
+  return GpuMesh(positions, triangles, GpuMesh::Use::still);
 }
 
 }  // namespace

@@ -51,7 +51,7 @@ struct Sent {
   explicit Sent(const TriMesh& source)
       : positions(floats(source)),
         triangles(source.triangles),
-        mesh(positions, triangles, false),
+        mesh(positions, triangles, GpuMesh::Use::still),
         edges(triangles) {
     vertex_normals(positions, triangles, normals);
     mesh.send_shape(positions, normals);

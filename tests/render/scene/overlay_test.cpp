@@ -1,4 +1,6 @@
 // Cuts and overlays in pictures.
+#include <cstdlib>
+#include <filesystem>
 #include <functional>
 #include <numbers>
 
@@ -8,6 +10,7 @@
 #include "render/mesh/cut_cover.h"
 #include "render/mesh/vertex_normals.h"
 #include "tests/render/scene_fixture.h"
+#include "tests/support/program.h"
 
 namespace condyle {
 namespace {
@@ -432,6 +435,38 @@ TEST_F(Overlays, ABodyOfFibresIsHiddenByBoneAndStriped) {
   EXPECT_GT(mixed.r, pixel(seen, 100, 100).r + 30);
   renderer.set_body("muscle", {});
   EXPECT_EQ(renderer.picture(front_camera(), settings).rgba, bare.rgba);
+}
+
+TEST_F(Overlays, PiecesOfPartsAreStoredThoseOfOverlaysAreNot) {
+  const test::Folder cache;
+  const char* before = std::getenv("XDG_CACHE_HOME");
+  const std::string kept = before ? before : "";
+  setenv("XDG_CACHE_HOME", cache.path().c_str(), 1);
+  const auto stored = [&] {
+    int files = 0;
+    for (const auto& file : std::filesystem::directory_iterator(cache.path() / "condyle"))
+      files += file.path().filename().string().starts_with("patches-");
+    return files;
+  };
+  const std::vector<Part> parts = {skull_ball(),
+                                   make_part("face", Role::face, ball({0, 0, 0}, 80))};
+  SceneRenderer renderer(parts);
+  const Image bare = renderer.picture(front_camera(), mask_settings());
+  EXPECT_EQ(stored(), 2);
+  for (const double forward_mm : {0, 5}) {
+    FibreBody body = fibre_ball({0, -100 - forward_mm, 0}, 10);
+    GlassSheet sheet;
+    sheet.positions = body.positions;
+    sheet.triangles = body.triangles;
+    for (auto& p : sheet.positions) p.x() += 25;
+    renderer.set_body("muscle", std::move(body));
+    renderer.set_sheet("layer", sheet);
+    EXPECT_NE(renderer.picture(front_camera(), mask_settings()).rgba, bare.rgba);
+    renderer.set_body("muscle", {});
+    renderer.set_sheet("layer", {});
+  }
+  EXPECT_EQ(stored(), 2);
+  before ? setenv("XDG_CACHE_HOME", kept.c_str(), 1) : unsetenv("XDG_CACHE_HOME");
 }
 
 TEST_F(Overlays, ABodyOfFibresIsFaintThroughSkinAndCutWithEverything) {
