@@ -6,6 +6,12 @@
 namespace condyle {
 namespace {
 
+constexpr const char* software_renderers[] = {"llvmpipe", "softpipe", "swrast", "SWR"};
+
+}  // namespace
+
+namespace {
+
 GLuint compile(const char* what, GLenum kind, const std::string& source) {
   const GLuint shader = glCreateShader(kind);
   const char* text = source.c_str();
@@ -83,6 +89,12 @@ void GlProgram::set(const char* uniform, const Eigen::Matrix4f& value) {
 std::string renderer_name() {
   const auto* name = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
   return name ? name : "unknown driver";
+}
+
+bool draws_in_software() {
+  const std::string name = renderer_name();
+  return std::any_of(std::begin(software_renderers), std::end(software_renderers),
+                     [&](const char* of) { return name.find(of) != std::string::npos; });
 }
 
 }  // namespace condyle

@@ -81,5 +81,7 @@ class GlProgram {
 
 /// GL_RENDERER of the current context.
 std::string renderer_name();
+/// Whether the current context draws without a graphics card.
+bool draws_in_software();
 
 }  // namespace condyle

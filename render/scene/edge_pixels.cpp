@@ -10,14 +10,14 @@ std::span<std::uint8_t> EdgePixels::marks_within(const DrawnBox& box) {
   return marks_;
 }
 
-bool EdgePixels::any(const Eigen::Vector2f& low, const Eigen::Vector2f& high) const {
-  constexpr float margin = 0.1f;  // pixels; GPUs move corners by less
+bool EdgePixels::any(const Eigen::Vector2f& low, const Eigen::Vector2f& high, float widened) const {
+  const float margin = 0.1f + widened;  // pixels; GPUs move corners by less than the first
   // Far outside, values may exceed the range of int.
-  const auto first = [](float pixel, int from, int end) {
+  const auto first = [margin](float pixel, int from, int end) {
     return static_cast<int>(
         std::clamp(pixel - margin, static_cast<float>(from), static_cast<float>(end)));
   };
-  const auto last = [](float pixel, int from, int end) {
+  const auto last = [margin](float pixel, int from, int end) {
     return static_cast<int>(
         std::clamp(pixel + margin, static_cast<float>(from - 1), static_cast<float>(end - 1)));
   };
@@ -34,7 +34,7 @@ bool EdgePixels::any(const Eigen::Vector2f& low, const Eigen::Vector2f& high) co
 const std::vector<Eigen::Vector3i>& EdgePixels::touching(std::span<const Eigen::Vector3f> points,
                                                          std::span<const Eigen::Vector3i> triangles,
                                                          const Eigen::Matrix4f& to_clip, int width,
-                                                         int height) {
+                                                         int height, float widened) {
   const Eigen::Vector2f half(0.5f * static_cast<float>(width), 0.5f * static_cast<float>(height));
   projected_.clear();
   for (const auto& point : points) {
@@ -49,7 +49,7 @@ const std::vector<Eigen::Vector3i>& EdgePixels::touching(std::span<const Eigen::
                           &b = projected_[static_cast<std::size_t>(t[1])],
                           &c = projected_[static_cast<std::size_t>(t[2])];
     const Eigen::Vector3f low = a.cwiseMin(b).cwiseMin(c), high = a.cwiseMax(b).cwiseMax(c);
-    if (low.z() < 1 || any(low.head<2>(), high.head<2>())) chosen_.push_back(t);
+    if (low.z() < 1 || any(low.head<2>(), high.head<2>(), widened)) chosen_.push_back(t);
   }
   return chosen_;
 }

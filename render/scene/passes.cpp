@@ -12,6 +12,8 @@
 namespace condyle {
 namespace {
 
+constexpr float lash_pixels = 0.5f;  // least radius
+
 constexpr int shadow_side = 1024;
 constexpr int colour_count = 1024;  // of the lookup table of a colour map
 constexpr float marker_radius_mm = 1.2f;
@@ -111,7 +113,8 @@ Passes::Passes()
       place_("place", place_shaders()),
       edges_("edges", edge_shaders()),
       inner_("inner", inner_shaders()),
-      shadow_map_(shadow_side) {
+      shadow_map_(shadow_side),
+      software_(draws_in_software()) {
   const auto table = make_skin_table();
   glBindTexture(GL_TEXTURE_2D, skin_table_);
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
@@ -208,14 +211,12 @@ void Passes::place(GlProgram& program, const DrawItem& item, const PictureView& 
   const bool in_mouth = view.dark_mouth && item.role() != Role::eyes && !is_piece(item.role());
   program.set("cavity", Eigen::Vector2f(view.lips_y, in_mouth ? 1 / mouth_depth_mm : 0.f));
   program.set("window_ball", view.window_ball);
-  // Thinner lashes would be drawn as dots. Several samples need no help; where lashes are seen
-  // through, their depths are drawn by another program.
-  constexpr float least_pixels = 0.5f;  // radius
+  // Thinner lashes would be drawn as dots. Where they are seen through, another program draws their
+  // depths.
   const auto& skin = item.drawable->behind_lashes;
-  const bool grow = skin && view.one_sample && item.opaque();
-  program.set("lashes", grow
-                            ? Eigen::Vector2f(thickest_lash_mm, least_pixels / view.pixels_per_unit)
-                            : Eigen::Vector2f::Zero());
+  const bool grow = skin && item.opaque();
+  program.set("lashes", grow ? Eigen::Vector2f(thickest_lash_mm, lash_pixels / view.pixels_per_unit)
+                             : Eigen::Vector2f::Zero());
   if (grow) program.set("behind_lashes", *skin);
   begin_cut(program, item, view);
 }
@@ -396,6 +397,7 @@ void Passes::find_edges(const PictureView& view) {
   glDisable(GL_DEPTH_TEST);
   glDrawArrays(GL_TRIANGLES, 0, 3);
   glEnable(GL_DEPTH_TEST);
+  if (!software_) return;  // a card draws all triangles sooner than it sends the marks
   const DrawnBox& box = view.box;
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
   glReadPixels(box.x0, box.y0, box.width(), box.height(), GL_RED, GL_UNSIGNED_BYTE,
@@ -427,9 +429,12 @@ void Passes::place_sampled(std::span<const DrawItem> items, const std::vector<ch
     place(carry_, items[i], view);
     carry_.set("number", number_of(i));
     const auto& mesh = items[i].mesh();
-    mesh.draw(edge_pixels_.touching(mesh.points(), seen_of(items[i], view),
-                                    view.view_projection * items[i].model, view.width,
-                                    view.height));
+    const auto& triangles = seen_of(items[i], view);
+    const float widened = items[i].drawable->behind_lashes ? lash_pixels : 0;
+    mesh.draw(software_ ? edge_pixels_.touching(mesh.points(), triangles,
+                                                view.view_projection * items[i].model, view.width,
+                                                view.height, widened)
+                        : triangles);
     end_cut();
   }
   glDisable(GL_STENCIL_TEST);

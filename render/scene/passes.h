@@ -156,6 +156,7 @@ class Passes {
   Visibility visibility_;
   CoverGrid cover_;  // by the opaque face
   EdgePixels edge_pixels_;
+  bool software_;  // no card
 };
 
 }  // namespace condyle

@@ -61,7 +61,7 @@ out vec3 to_eye;
 out vec3 world_normal;
 out vec3 albedo;               // linear
 out vec3 shadow_place;
-out vec4 traits;  // occlusion, curvature, gloss, depth in the mouth at rest
+out vec4 traits;  // occlusion, curvature (of eyes: 1 on lashes), gloss, depth in the mouth at rest
 out float mapped_value;
 out vec3 rest_place;
 void main() {
@@ -86,6 +86,7 @@ void main() {
   traits = vec4(mix(extra.x, color.a, together), extra.y, extra.z,
                 mix(1.0, exp(-max(position.y - cavity.x, 0.0) * cavity.y),
                     smoothstep(-2.0, 0.0, beside_window) * (1.0 - extra.w)));
+  if (radius > 0.0) traits.y = 1.0;  // hair is not wet
 }
 )";
 

@@ -229,7 +229,7 @@ void main() {
     // as a window: on the iris from the front and from either side.
     bool eye = coat > 0.9;
     vec3 mirrored_key = eye ? normalize(key_direction - 0.35 * sky_direction) : key_direction;
-    c += coat * reflectance * (key_color * specular(n, v, mirrored_key, 0.16) * (eye ? sqrt(lit) : lit)
+    c += coat * (1.0 - traits.y) * reflectance * (key_color * specular(n, v, mirrored_key, 0.16) * (eye ? sqrt(lit) : lit)
        + fill_color * (eye ? 3.0 : 1.0) * specular(n, v, fill_direction, 0.2) * open);
   }
   float a = seen_through ? 1.0 - pow(1.0 - opacity, 1.0 / max(nv, 0.35)) : opacity;
