@@ -28,6 +28,10 @@ constexpr float clear_mm = 0.15f;             // of the eyeball
 constexpr double iris_shown = 21 * deg;       // edge of a lid that covers the top of the iris
 constexpr double lid_per_gaze = 0.8;          // rotation of the lid over that of the eye
 constexpr double highest = -0.2;              // above rest, fraction of the way down
+constexpr double beside_edge = 3 * deg;
+// Where the change of the opening is measured, about the axis; edges count by their distance.
+constexpr double measured_every = 8 * deg, measured_over = 6 * deg;
+constexpr int measured = 17;
 constexpr auto columns = static_cast<std::size_t>(2 * farthest_along / step_along) + 1;
 
 double along_of(std::size_t column) {
@@ -202,12 +206,43 @@ void UpperLid::collect(std::span<const Vector3f> rest) {
     const Angles at = angles_of(rest[v].cast<double>());
     const Gap gap = gap_at(at.along);
     const double way = way_at(at.along);
-    if (!(way > 0) || at.up < (gap.bottom + gap.top) / 2) continue;
+    if (!(way > 0)) continue;
+    if (away < eyeball_.radius + thin_mm) collect_edge(static_cast<int>(v), at, gap);
+    if (at.up < (gap.bottom + gap.top) / 2) continue;
     const double above = (at.up - gap.top - tarsus) / (fold_above_edge - tarsus);
     const double deep = (away - eyeball_.radius - thin_mm) / (deep_mm - thin_mm);
     const double moves = (1 - smooth_step(above)) * (1 - smooth_step(deep));
-    if (moves > 0) members_.push_back({static_cast<int>(v), static_cast<float>(way * moves)});
+    if (moves > 0)
+      members_.push_back({static_cast<int>(v), static_cast<float>(way * moves),
+                          static_cast<float>(moves), static_cast<float>(at.along)});
   }
+}
+
+void UpperLid::collect_edge(int vertex, const Angles& at, const Gap& gap) {
+  if (std::abs(at.up - gap.top) < beside_edge)
+    upper_edge_.push_back({vertex, at.along, at.up});
+  else if (std::abs(at.up - gap.bottom) < beside_edge)
+    lower_edge_.push_back({vertex, at.along, at.up});
+}
+
+/// By how much more than at rest the lids are apart, rad, at `measured` angles along the axis.
+std::vector<float> UpperLid::widening(std::span<const Vector3f> places) const {
+  const auto raised = [&](const std::vector<EdgeVertex>& edge, double along) {
+    double sum = 0, all = 1e-9;
+    for (const EdgeVertex& of : edge) {
+      const double off = (of.along - along) / measured_over, weight = std::exp(-off * off);
+      const Vector3d now = places[static_cast<std::size_t>(of.vertex)].cast<double>();
+      sum += weight * (angles_of(now).up - of.up);
+      all += weight;
+    }
+    return sum / all;
+  };
+  std::vector<float> wider;
+  for (int i = 0; i < measured; ++i) {
+    const double along = measured_every * (i - measured / 2);
+    wider.push_back(static_cast<float>(raised(upper_edge_, along) - raised(lower_edge_, along)));
+  }
+  return wider;
 }
 
 double UpperLid::lowered(double closure, double gaze_up) const {
@@ -218,10 +253,17 @@ double UpperLid::lowered(double closure, double gaze_up) const {
 void UpperLid::move(double lowered, const Vector3f& gaze, std::span<Vector3f> places) const {
   if (lowered == 0) return;
   const Vector3f axis = axis_.cast<float>(), ahead = ahead_.cast<float>(), up = up_.cast<float>();
-  for (const auto& [vertex, turn] : members_) {
+  const std::vector<float> wider = widening(places);
+  const auto widened = [&](float along) {
+    const float at = std::clamp(along / static_cast<float>(measured_every) + measured / 2, 0.f,
+                                measured - 1.001f);
+    const auto i = static_cast<std::size_t>(at);
+    return wider[i] + (at - static_cast<float>(i)) * (wider[i + 1] - wider[i]);
+  };
+  for (const auto& [vertex, turn, share, along] : members_) {
     Vector3f& p = places[static_cast<std::size_t>(vertex)];
     const Vector3f v = p - eyeball_.centre;
-    const float angle = -static_cast<float>(lowered) * turn;
+    const float angle = -static_cast<float>(lowered) * (turn + share * widened(along));
     const float c = std::cos(angle), s = std::sin(angle);
     const float x = v.dot(ahead), z = v.dot(up);
     Vector3f there = v.dot(axis) * axis + (c * x - s * z) * ahead + (s * x + c * z) * up;

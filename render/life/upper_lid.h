@@ -39,8 +39,8 @@ class UpperLid {
   /// the lid follows. A lid that shows all of the iris is lowered a little: the eye would stare.
   double lowered(double closure, double gaze_up) const;
 
-  /// Moves the lid's vertices by a fraction of the way to the lower lid; none enters the eyeball.
-  /// gaze: unit.
+  /// Moves the lid's vertices by a fraction of the way to the lower lid, from where the face's
+  /// expression has both lids; none enters the eyeball. gaze: unit.
   void move(double lowered, const Eigen::Vector3f& gaze, std::span<Eigen::Vector3f> places) const;
 
   /// Whether a point on a lid's edge at rest is on the upper lid.
@@ -60,7 +60,14 @@ class UpperLid {
   };
   struct Member {
     int vertex;
-    float turn;  // rad, when the lid is closed
+    float turn;   // rad, when the lid is closed
+    float share;  // of the turn of the lid's edge
+    float along;
+  };
+  /// A vertex beside the edge of a lid, at rest.
+  struct EdgeVertex {
+    int vertex;
+    double along, up;
   };
   UpperLid(const Eyeball& eyeball) : eyeball_(eyeball) {}
   Angles angles_of(const Eigen::Vector3d& p) const;
@@ -71,12 +78,15 @@ class UpperLid {
   void taper();
   bool lean_on_canthi();
   void collect(std::span<const Eigen::Vector3f> rest);
+  void collect_edge(int vertex, const Angles& at, const Gap& gap);
+  std::vector<float> widening(std::span<const Eigen::Vector3f> places) const;
 
   Eyeball eyeball_;
   Eigen::Vector3d axis_ = {1, 0, 0}, ahead_ = {0, -1, 0}, up_ = {0, 0, 1};
   std::vector<Gap> gaps_;  // by angle along the axis
   double widest_ = 0, staring_ = 0;
   std::vector<Member> members_;
+  std::vector<EdgeVertex> upper_edge_, lower_edge_;
 };
 
 }  // namespace condyle

@@ -72,6 +72,24 @@ TEST(UpperLidTest, TheEyeballIsHiddenByAClosedLidAndShowsLessTheMoreItIsClosed) 
   EXPECT_EQ(showing(eye, eye.moved(1)), 0);
 }
 
+TEST(UpperLidTest, AClosedLidHidesTheEyeballOfAFaceThatRaisesIt) {
+  const Eye eye;
+  ASSERT_TRUE(eye.lid);
+  // Skin above the middle of the opening is raised by 7 degrees about the eyeball's centre.
+  const Eigen::AngleAxisf up(-0.12f, Vector3f(1, 0, 0));
+  auto raised = eye.rest;
+  for (Vector3f& p : raised)
+    if (const Vector3f from = p - centre.cast<float>(); from.y() < 0) {
+      const float above = std::clamp((from.z() - 0.1f * from.x()) / 2, 0.f, 1.f);
+      p += above * (up * from - from);
+    }
+  const double before = showing(eye, eye.rest), open = showing(eye, raised);
+  EXPECT_GT(open, 1.1 * before);
+  auto places = raised;
+  eye.lid->move(1, ahead, places);
+  EXPECT_EQ(showing(eye, places), 0);
+}
+
 TEST(UpperLidTest, TheLowerLidAndTheSkinAboveTheFoldStay) {
   const Eye eye;
   ASSERT_TRUE(eye.lid);
