@@ -75,7 +75,7 @@ void add_quality(CLI::App& command, PictureOptions& picture) {
       "--no-folds", [&picture] { picture.folds = false; },
       "Draw the face without the folds of compressed skin, which are in pictures alone");
   command.add_flag("--life", picture.life,
-                   "Look only: an opaque face blinks, looks about and breathes, and the head "
+                   "Look only: an opaque face blinks, looks around and breathes, and the head "
                    "extends as the jaw opens; nothing measured changes");
 }
 

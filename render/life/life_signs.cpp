@@ -28,7 +28,7 @@ double choice(std::int64_t event, Choice which) {
 
 /// One blink in each slot of time, at a different place in each.
 double lid_closure(double time_s) {
-  constexpr double slot_s = 4, first_s = 0.8, closing_s = 0.1, closed_s = 0.04, opening_s = 0.2;
+  constexpr double slot_s = 4, first_s = 0.8, closing_s = 0.1, closed_s = 0.04, opening_s = 0.17;
   const auto slot = static_cast<std::int64_t>(std::floor(time_s / slot_s));
   const double since =
       time_s - slot_s * static_cast<double>(slot) - first_s - choice(slot, Choice::blink);

@@ -32,7 +32,7 @@ struct LifeSigns {
 };
 
 /// A function of its arguments alone. X_CM: pose of the lower jaw.
-/// Blinks every 3 to 5 s, the first before 2 s, the lids closing in 0.1 s and opening in 0.2 s;
+/// Blinks every 3 to 5 s, the first before 2 s, the lids closing in 0.1 s and opening in 0.17 s;
 /// saccades of up to 9 degrees; 13.5 breaths a minute; the head extends by a tenth of the jaw's
 /// rotation.
 /// source: closing is faster than opening by 40 to 47 %: Sforza 2008; that the head extends as the

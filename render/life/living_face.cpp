@@ -100,9 +100,16 @@ void LivingFace::move_eyes(std::size_t part, const LifeSigns& signs, std::span<V
 }
 
 std::string LivingFace::shortfall() const {
-  if (eyeballs_ == 0) return "no eyeballs were found: eyes and lids do not move";
-  if (lids_.empty()) return "no open lids were found: the eyes do not blink";
-  return {};
+  std::string lacks;
+  if (eyeballs_ == 0)
+    lacks = "no eyeballs were found: eyes and lids do not move";
+  else if (lids_.empty())
+    lacks = "no open lids were found: the eyes do not blink";
+  if (neck_.empty()) {
+    if (!lacks.empty()) lacks += "; ";
+    lacks += "no neck was found: the whole head turns, and the neck does not breathe";
+  }
+  return lacks;
 }
 
 }  // namespace condyle

@@ -40,7 +40,7 @@ bool shows_life(std::span<const Part> parts, const PictureSettings& settings) {
 
 std::string life_note(std::span<const Part> parts, const PictureSettings& settings) {
   if (!shows_life(parts, settings))
-    return "look only: life is drawn in an opaque, uncut face alone, so these pictures have none";
+    return "look only: only an opaque, uncut face shows life, so these pictures have none";
   const TriMesh& mesh = face_among(parts)->mesh;
   const std::string lacks = LivingFace(parts, float_positions(mesh), mesh.triangles).shortfall();
   return "look only: blinks, gaze, pupils, breathing and the head's extension are in the pictures "

@@ -376,7 +376,7 @@ void measure_blocked_jaw(const Case& patient, const Jaws& jaws, int threads, Res
     }
 }
 
-/// A recorded motion whose crowns overlap by up to 2 mm as the jaw grinds: the contacts of a frame.
+/// A recorded motion whose crowns overlap by up to 3 mm as the jaw grinds: the contacts of a frame.
 /// Nothing stops it.
 void measure_recorded_overlap(const Case& patient, const Jaws& jaws, int threads,
                               Results& results) {

@@ -135,7 +135,7 @@ void Panels::Drawing::look_overlays() {
   tooltip(pen, "Where the skin is compressed; in the picture alone, not in measures or exports");
   tick_box(pen, "life", "Life (look only)", look.life);
   tooltip(pen,
-          "An opaque face blinks, looks about and breathes while the motion plays, and the head "
+          "An opaque face blinks, looks around and breathes while the motion plays, and the head "
           "extends as the jaw opens; in the picture alone, never in measures or exports");
 }
 

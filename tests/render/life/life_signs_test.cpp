@@ -45,7 +45,7 @@ TEST(LifeSigns, LidsCloseWithinTwoSecondsAndThenEveryThreeToFive) {
     EXPECT_LE(interval, 5.01);
     regular &= std::abs(interval - 4) < 0.3;
     EXPECT_NEAR(blinks[i].closed_from_s - blinks[i].from_s, 0.1, 0.01);
-    EXPECT_NEAR(blinks[i].to_s - blinks[i].closed_to_s, 0.2, 0.01);
+    EXPECT_NEAR(blinks[i].to_s - blinks[i].closed_to_s, 0.17, 0.01);
     EXPECT_GT(blinks[i].closed_to_s - blinks[i].closed_from_s, 1 / 30.0) << "a film shows it";
   }
   EXPECT_FALSE(regular);
