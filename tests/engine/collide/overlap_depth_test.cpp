@@ -81,46 +81,6 @@ TEST(OverlapDepth, IsTheSameWhereTheCrossingFacesAreKnown) {
   EXPECT_GT(crossed, 20);
 }
 
-TriMesh faces_of(const TriMesh& mesh, const std::vector<int>& triangles) {
-  TriMesh faces{mesh.vertices, {}, {}};
-  for (const int t : triangles) faces.triangles.push_back(mesh.triangles[t]);
-  return faces;
-}
-
-/// A jaw held by its bite overlaps by some micrometres, on faces of a millimetre: halving the faces
-/// alone took two to eight times as many evaluations.
-TEST(OverlapDepth, OfAShallowContactIsProvedByFewEvaluations) {
-  std::mt19937_64 random(26);
-  const TriMesh mesh_a = test::sphere(5, 6), mesh_b = test::sphere(5, 4);
-  const Solid a(mesh_a), b(mesh_b);
-  const CollisionMesh surface_a(mesh_a), surface_b(mesh_b);
-  int proved = 0;
-  for (const auto& [lens_mm, most] : {std::pair(0.005, 800), {0.01, 800}, {0.05, 1600}})
-    for (int k = 0; k < 8; ++k) {
-      const Pose X_WB{test::any_pose(random, 1).R,
-                      (10 - lens_mm) * test::any_pose(random, 1).t.normalized()};
-      CrossingFaces crossing;
-      for (const auto& contact : contacts(surface_a, {}, surface_b, X_WB)) {
-        crossing.a.push_back(contact.triangles.a);
-        crossing.b.push_back(contact.triangles.b);
-      }
-      if (crossing.a.empty()) continue;  // facets lie up to 0.003 mm within the spheres
-      const OverlapDepth found =
-          overlap_depth(a, {}, b, X_WB, {.max_evaluations = most}, &crossing);
-      EXPECT_LE(found.error_mm, 2e-4);
-      EXPECT_GT(found.depth_mm, lens_mm - 0.006);
-      EXPECT_LE(found.depth_mm, lens_mm);
-      // Among the faces that cross, where the deepest point is.
-      const double sampled =
-          std::max(deepest_sample(faces_of(mesh_a, crossing.a), mesh_b, X_WB.inverse(), 6),
-                   deepest_sample(faces_of(mesh_b, crossing.b), mesh_a, X_WB, 6));
-      EXPECT_GT(sampled, 0);
-      EXPECT_GE(found.depth_mm + found.error_mm, sampled - 1e-9);
-      ++proved;
-    }
-  EXPECT_GT(proved, 15);
-}
-
 TEST(OverlapDepth, GrowsByNoMoreThanTheMotion) {
   std::mt19937_64 random(21);
   const Solid a(test::sphere(3, 15, {0, 0, 0}, 0.1)), b(test::sphere(3, 10, {0, 0, 0}, 0.1));
