@@ -1,5 +1,9 @@
 #include "render/gl/gl_objects.h"
 
+#include <algorithm>
+#include <iterator>
+#include <string>
+
 #include "engine/core/error.h"
 #include "render/shaders/shaders.h"
 
@@ -7,10 +11,6 @@ namespace condyle {
 namespace {
 
 constexpr const char* software_renderers[] = {"llvmpipe", "softpipe", "swrast", "SWR"};
-
-}  // namespace
-
-namespace {
 
 GLuint compile(const char* what, GLenum kind, const std::string& source) {
   const GLuint shader = glCreateShader(kind);
