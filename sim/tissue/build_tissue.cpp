@@ -16,6 +16,7 @@
 #include "sim/tissue/coarse_skin.h"
 #include "sim/tissue/columns.h"
 #include "sim/tissue/face_display.h"
+#include "sim/tissue/flattened_skin.h"
 #include "sim/tissue/model.h"
 #include "sim/tissue/placement.h"
 #include "sim/tissue/rest_state.h"
@@ -101,12 +102,11 @@ Build prepare(const Case& patient, const TissueSettings& settings, const TriMesh
   build.anatomy = read_anatomy(patient, summary.notes);
   build.region =
       cut_region(face, patient.landmarks, build.anatomy, settings.upper_face, summary.notes);
-  build.skin = make_coarse_skin(build.region, settings.surface_nodes);
   return build;
 }
 
 /// The columns with their layers, and the resulting mesh.
-std::shared_ptr<TissueMesh> make_mesh(Build& build, TissueSummary& summary) {
+std::shared_ptr<TissueMesh> make_layers(Build& build, std::vector<std::string>& notes) {
   auto [skin, columns] = std::tie(build.skin, build.columns);
   ColumnSettings& column_settings = build.column_settings;
   column_settings.finer = build.settings.surface_nodes / static_cast<double>(default_surface_nodes);
@@ -115,7 +115,7 @@ std::shared_ptr<TissueMesh> make_mesh(Build& build, TissueSummary& summary) {
                                     short_edge(skin.mesh), HessianFactor::most_per_column - 1)
                      : build.asked_layers;
   if (build.layers.fraction.size() > build.asked_layers.fraction.size())
-    summary.notes.push_back(fmt::format(
+    notes.push_back(fmt::format(
         "layers are cut, {} into {}: springs of so fine a mesh would not fill them evenly",
         build.asked_layers.fraction.size(), build.layers.fraction.size()));
   column_settings.layer_fraction = build.layers.fraction;
@@ -123,8 +123,8 @@ std::shared_ptr<TissueMesh> make_mesh(Build& build, TissueSummary& summary) {
     return sides_of(skin.mesh, skin.mouth, build.region.fissure, tissue_defaults::side_reach_mm);
   };
   columns = make_columns(skin, build.bones, build.anatomy, column_settings, build.patient.landmarks,
-                         build.plan, sides(), summary.notes);
-  check_placement(skin, build.bones, columns, column_settings, summary.notes);
+                         build.plan, sides(), notes);
+  check_placement(skin, build.bones, columns, column_settings, notes);
   build.side = sides();
 
   auto mesh = std::make_shared<TissueMesh>();
@@ -137,18 +137,51 @@ std::shared_ptr<TissueMesh> make_mesh(Build& build, TissueSummary& summary) {
       {skin, columns, build.side, mesh->sheets, mesh->rest, {}, {}, {}, build.bones.jaw},
       mesh->rest);
   if (parted > 0.5)
-    summary.notes.push_back("the simulated lips overlapped: separated by up to " +
-                            fmt::format("{:.1f} mm", parted));
+    notes.push_back("the simulated lips overlapped: separated by up to " +
+                    fmt::format("{:.1f} mm", parted));
   mesh->elements = make_elements(build.plan, build.layers, skin.mesh.triangles, mesh->rest);
-  for (std::size_t p = 0; p < mesh->elements.prisms.size(); ++p)
-    if (mesh->elements.rest_volume[p] <= 0) {
-      const Vector3d& at = mesh->rest[mesh->elements.prisms[p][0]];
+  return mesh;
+}
+
+/// Where prisms of the mesh are inverted: their columns.
+std::vector<int> inverted_columns(const TissueMesh& mesh) {
+  std::vector<int> columns;
+  for (std::size_t p = 0; p < mesh.elements.prisms.size(); ++p)
+    if (mesh.elements.rest_volume[p] <= 0)
+      for (int node : mesh.elements.prisms[p]) columns.push_back(node / mesh.sheets);
+  std::sort(columns.begin(), columns.end());
+  columns.erase(std::unique(columns.begin(), columns.end()), columns.end());
+  return columns;
+}
+
+/// The mesh below the skin, which is flattened where no tissue fits below it: more widely until it
+/// does.
+std::shared_ptr<TissueMesh> make_mesh(Build& build, TissueSummary& summary) {
+  constexpr double flattened_mm = 6;  // around such places, and as much more each time
+  constexpr int most_times = 3;
+  SkinRegion region = build.region;
+  for (int times = 0;; ++times) {
+    build.skin = make_coarse_skin(region, build.settings.surface_nodes);
+    const TriMesh sheet = build.skin.mesh;
+    std::vector<std::string> notes;
+    std::shared_ptr<TissueMesh> mesh = make_layers(build, notes);
+    const std::vector<int> inverted = inverted_columns(*mesh);
+    if (inverted.empty()) {
+      summary.notes.insert(summary.notes.end(), notes.begin(), notes.end());
+      if (times > 0)
+        summary.notes.push_back("the simulated sheet is flat where the skin folds too sharply");
+      return mesh;
+    }
+    const Vector3d& at = sheet.vertices[inverted.front()];
+    if (times == most_times)
       throw InputError(
           fmt::format("face: the skin folds near ({:.1f}, {:.1f}, {:.1f}) mm so that tissue below "
                       "it would turn inside out; smooth the face there",
                       at.x(), at.y(), at.z()));
-    }
-  return mesh;
+    std::vector<Vector3d> places;
+    for (int column : inverted) places.push_back(sheet.vertices[column]);
+    region.mesh = flattened_near(region.mesh, places, (times + 1) * flattened_mm);
+  }
 }
 
 /// Anchors and contact.

@@ -2,10 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
 
+#include "sim/phantom/phantom.h"
 #include "sim/tissue/lips.h"
 #include "sim/tissue/tissue.h"
 #include "tests/support/jaw_pose.h"
@@ -86,6 +88,18 @@ TEST(TissueRefinement, FromTwoToTwentyThousandNodesMovesARealFaceByLessThanFiveP
 
 TEST(TissueRefinement, FromTwoToEightThousandNodesGluedMovesARealFaceByLessThanFivePercent) {
   expect_same_tissue(TissueBond::glued);
+}
+
+// So fine a mesh has pits in the nostrils, below whose walls tissue would pass through itself.
+TEST(TissueRefinement, PitsThatAreTooNarrowForTissueAreFlattened) {
+  Case patient = builtin_patient();
+  part_lips(patient);
+  const auto model = build_tissue(patient, {.surface_nodes = 2200});
+  const auto& notes = summary(*model).notes;
+  EXPECT_TRUE(std::any_of(notes.begin(), notes.end(), [](const std::string& note) {
+    return note.find("is flat where the skin folds") != std::string::npos;
+  }));
+  EXPECT_LT(summary(*model).rest_move_mm, 1e-4);
 }
 
 }  // namespace
