@@ -15,6 +15,11 @@ namespace {
 constexpr double reach_rounding_mm = 1e-9;
 constexpr double touching_mm2 = 1e-20;
 constexpr std::size_t max_inside = 500;  // faces examined individually
+constexpr int many_faces = 64;           // of a ball: it is divided without a query
+constexpr int max_cuts = 6;              // along planes, in a sequence
+constexpr double near_sizes = 1;  // deepest middle of a face that is cut, by the size of the face
+// Cuts leave this gap to the plane, so that what lies beyond it does not touch the triangle.
+constexpr double plane_gap_mm = 1e-5;
 
 }  // namespace
 
@@ -90,9 +95,12 @@ class DepthSearch {
   };
   struct Item {
     Into into;
-    int ball = -1;  // a range of faces, or
-    Triangle face;  // a face or a part of one, whose corners have been evaluated
-    Place middle;
+    int ball = -1;       // a range of faces, or
+    Triangle face = {};  // a face or a part of one
+    Place middle = {};
+    bool looked = false;  // a ball's middle has been evaluated; otherwise it is a place nearby
+    int across = -1;      // a triangle of the shell that touches the face, if its middle is outside
+    int cuts = 0;         // along planes, since it was last halved
   };
   struct Waiting {
     double bound;
@@ -163,23 +171,30 @@ class DepthSearch {
     return std::sqrt(farthest2);
   }
 
-  /// A face with one point outside lies entirely outside unless the shell crosses it.
-  bool is_outside(Into into, const Triangle& t, const Place& middle) const {
-    if (middle.depth >= -reach_rounding_mm) return false;
+  /// A triangle of the shell that touches t; -1: none. With one point outside, t then lies entirely
+  /// outside.
+  int touched(Into into, const Triangle& t) const {
     const Eigen::Vector3d low = t[0].cwiseMin(t[1]).cwiseMin(t[2]).array() - reach_rounding_mm,
                           high = t[0].cwiseMax(t[1]).cwiseMax(t[2]).array() + reach_rounding_mm;
-    return !shell(into).tree.any_near(low, high, [&](const Triangle& other, int) {
+    int found = -1;
+    shell(into).tree.any_near(low, high, [&](const Triangle& other, int triangle) {
       const Eigen::Vector3d low_other = other[0].cwiseMin(other[1]).cwiseMin(other[2]),
                             high_other = other[0].cwiseMax(other[1]).cwiseMax(other[2]);
-      return (low_other.array() <= high.array()).all() &&
-             (high_other.array() >= low.array()).all() &&
-             triangle_distance(t, other, touching_mm2).squared_mm2 < touching_mm2;
+      const bool touches = (low_other.array() <= high.array()).all() &&
+                           (high_other.array() >= low.array()).all() &&
+                           triangle_distance(t, other, touching_mm2).squared_mm2 < touching_mm2;
+      if (touches) found = triangle;
+      return touches;
     });
+    return found;
   }
 
   /// Queues an item; all of it lies within `radius` of its middle.
   void wait(double bound, double radius, const Item& item) {
-    if (bound <= enough() || !may_count(item.into, item.middle, radius)) return;
+    if (bound > enough() && may_count(item.into, item.middle, radius)) push(bound, item);
+  }
+
+  void push(double bound, const Item& item) {
     std::size_t place = items_.size();
     if (free_.empty()) {
       items_.push_back(item);
@@ -191,24 +206,37 @@ class DepthSearch {
     waiting_.push({bound, place, number_++});
   }
 
+  /// Queues a ball; a bound from the place nearby suffices until it is the largest.
   void offer_ball(Into into, int index, const Place& near) {
     const Side& from = sides_[into.side];
     const Solid::Ball& ball = from.surface.balls_[index];
     const Eigen::Vector3d middle = from.X * ball.center;
-    if (near.triangle >= 0 && near.depth + (middle - near.at).norm() + ball.radius <= enough())
-      return;
-    if (!shell(into).box.contains(middle, ball.radius)) return;
+    // A point inside is no deeper than it is in the box.
+    double bound = shell(into).box.size().maxCoeff();
+    for (int k = 0; k < 3; ++k)
+      bound = std::min({bound, middle[k] - shell(into).box.low[k] + ball.radius,
+                        shell(into).box.high[k] - middle[k] + ball.radius});
+    if (near.triangle >= 0) {
+      const Triangle& opposite = shell(into).tree.corners(near.triangle);
+      bound = std::min({bound, near.depth + (middle - near.at).norm() + ball.radius,
+                        (nearest_point(middle, opposite) - middle).norm() + ball.radius});
+    }
+    if (bound <= enough()) return;
     if (knows_all_crossings(into) && ball.connected && !from.crosses(ball.first, ball.count) &&
         look_at_point(into, from.X * from.surface.faces_[ball.first][0], near).depth <
             -reach_rounding_mm)
       return;
-    const Place place = look_at(into, middle, near);
-    wait(place.depth + ball.radius, ball.radius, {into, index, {}, place});
+    push(bound, {.into = into, .ball = index, .middle = near});
   }
 
-  void divide_ball(const Item& item) {
+  void divide_ball(Item item) {
     const Side& from = sides_[item.into.side];
     const Solid::Ball& ball = from.surface.balls_[item.ball];
+    if (!item.looked && ball.count <= many_faces) {
+      item.middle = look_at(item.into, from.X * ball.center, item.middle);
+      item.looked = true;
+      return wait(item.middle.depth + ball.radius, ball.radius, item);
+    }
     if (ball.right != 0) {
       offer_ball(item.into, item.ball + 1, item.middle);
       offer_ball(item.into, ball.right, item.middle);
@@ -231,11 +259,15 @@ class DepthSearch {
     if (near.triangle >= 0 && bound(into, face, near) <= enough()) return near;
     const Place middle = look_at_middle(into, face, near);
     if (bound(into, face, middle) <= enough()) return middle;
-    if (knows_all_crossings(into) && !from.crosses(index, 1) ? middle.depth < -reach_rounding_mm
-                                                             : is_outside(into, face, middle))
-      return middle;
+    int across = -1;
+    if (middle.depth < -reach_rounding_mm) {
+      if (knows_all_crossings(into) && !from.crosses(index, 1)) return middle;
+      across = touched(into, face);
+      if (across < 0) return middle;
+    }
     for (const auto& corner : face) look_at_point(into, corner, middle);
-    wait(bound(into, face, middle), radius_about(face, middle.at), {into, -1, face, middle});
+    wait(bound(into, face, middle), radius_about(face, middle.at),
+         {.into = into, .face = face, .middle = middle, .across = across});
     return middle;
   }
 
@@ -298,7 +330,24 @@ class DepthSearch {
     return look_at_point(into, (t[0] + t[1] + t[2]) / 3, near);
   }
 
+  /// Divides a face along a plane of a triangle of the shell (its own, or through an edge and
+  /// upright on it), where the face passes through one, or else in halves. Bounds are exact for the
+  /// parts below the triangle, and the parts above it are often outside.
   void divide_face(const Item& item) {
+    const Triangle& t = item.face;
+    const PlaneCut cut = cut_of(item);
+    if (cut.lone < 0) return halve_face(item);
+    const int i = cut.lone, k = (i + 1) % 3, l = (i + 2) % 3;
+    const auto crossing = [&](int other) -> Eigen::Vector3d {
+      return t[i] + (t[other] - t[i]) * (cut.height[i] / (cut.height[i] - cut.height[other]));
+    };
+    const Eigen::Vector3d p = crossing(k), q = crossing(l);
+    for (const Triangle& part :
+         {Triangle{t[i], p, q}, Triangle{p, t[k], t[l]}, Triangle{p, t[l], q}})
+      offer_part(item, part, item.cuts + 1);
+  }
+
+  void halve_face(const Item& item) {
     const Triangle& t = item.face;
     std::size_t longest = 0;
     double length2 = -1;
@@ -308,13 +357,57 @@ class DepthSearch {
     const auto &a = t[longest], &b = t[(longest + 1) % 3], &c = t[(longest + 2) % 3];
     const Eigen::Vector3d half = (a + b) / 2;
     look_at_point(item.into, half, item.middle);
-    for (const Triangle& part : {Triangle{a, half, c}, Triangle{half, b, c}}) {
-      if (bound(item.into, part, item.middle) <= enough()) continue;
-      const Place middle = look_at_middle(item.into, part, item.middle);
-      const double most = bound(item.into, part, middle);
-      if (most > enough() && !is_outside(item.into, part, middle))
-        wait(most, radius_about(part, middle.at), {item.into, -1, part, middle});
-    }
+    offer_part(item, {a, half, c}, 0);
+    offer_part(item, {half, b, c}, 0);
+  }
+
+  void offer_part(const Item& item, const Triangle& part, int cuts) {
+    if (bound(item.into, part, item.middle) <= enough()) return;
+    const Place middle = look_at_middle(item.into, part, item.middle);
+    const double most = bound(item.into, part, middle);
+    if (most <= enough()) return;
+    const int across = middle.depth < -reach_rounding_mm ? touched(item.into, part) : -1;
+    if (middle.depth < -reach_rounding_mm && across < 0) return;
+    wait(most, radius_about(part, middle.at),
+         {.into = item.into, .face = part, .middle = middle, .across = across, .cuts = cuts});
+  }
+
+  struct PlaneCut {
+    int lone = -1;                 // the corner that is alone on its side; -1: no cut
+    std::array<double, 3> height;  // of the corners over the plane
+  };
+  /// Of the planes that the face passes through, that over which it rises most.
+  PlaneCut cut_of(const Item& item) const {
+    PlaneCut best;
+    const int along = item.across >= 0 ? item.across : item.middle.triangle;
+    if (item.cuts == max_cuts || along < 0) return best;
+    // Far below its nearest triangle a small face is in reach of many.
+    if (item.middle.depth > near_sizes * radius_about(item.face, item.middle.at)) return best;
+    const Triangle& opposite = shell(item.into).tree.corners(along);
+    const Eigen::Vector3d normal =
+        (opposite[1] - opposite[0]).cross(opposite[2] - opposite[0]).normalized();
+    double most = tolerance();
+    const auto offer = [&](const Eigen::Vector3d& on, const Eigen::Vector3d& upward, double gap) {
+      PlaneCut cut;
+      int above = 0;
+      double highest = 0, lowest = 0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        cut.height[k] = upward.dot(item.face[k] - on) - gap;
+        if (cut.height[k] > 0) ++above;
+        highest = std::max(highest, cut.height[k]);
+        lowest = std::min(lowest, cut.height[k]);
+      }
+      if (highest <= most || lowest >= -tolerance()) return;
+      most = highest;
+      for (int k = 0; k < 3; ++k)
+        if ((cut.height[k] > 0) == (above == 1)) cut.lone = k;
+      best = cut;
+    };
+    offer(opposite[0], normal, plane_gap_mm);
+    if (item.across >= 0) return best;
+    for (std::size_t k = 0; k < 3; ++k)
+      offer(opposite[k], (opposite[(k + 1) % 3] - opposite[k]).cross(normal).normalized(), 0);
+    return best;
   }
 
   DepthSettings settings_;

@@ -9,6 +9,7 @@
 #include "engine/mesh/repair.h"
 #include "engine/mesh_io/mesh_files.h"
 #include "tests/engine/collide/triangle_oracle.h"
+#include "tests/support/overlap_oracle.h"
 #include "tests/support/places.h"
 #include "tests/support/shapes.h"
 
@@ -82,6 +83,22 @@ TEST(RealBones, DistanceEqualsBruteForceOnPatchesOpenShellsAreReportedAndDepthIs
       EXPECT_TRUE(std::isfinite(region.area_mm2));
     }
   }
+}
+
+/// Crowns that a scan has fused overlap by a millimetre at rest, on coarse and fine faces alike.
+TEST(RealBones, DepthOfABiteAtRestIsProvedAndNoLessThanAtAnySample) {
+  if (!std::filesystem::exists(real_data())) GTEST_SKIP() << "real anatomy absent";
+  for (const char* lower : {"case-ubc/mandible_8k.ply", "case-ubc/lower_teeth.ply"})
+    for (const char* upper :
+         {"case-ubc/maxilla_with_teeth_wrap_30k.ply", "case-ubc/upper_teeth.ply"}) {
+      SCOPED_TRACE(std::string(upper) + " and " + lower);
+      const TriMesh a = bone(upper), b = bone(lower);
+      const OverlapDepth found = overlap_depth(Solid(a), {}, Solid(b), {});
+      EXPECT_GT(found.depth_mm, 1);
+      EXPECT_LE(found.error_mm, 1e-3 * found.depth_mm);
+      EXPECT_GE(found.depth_mm + found.error_mm,
+                deepest(test::OverlapOracle(a), test::OverlapOracle(b), {}));
+    }
 }
 
 TEST(RealBones, AWholeSkullIsBuiltAndQueriedInReasonableTime) {
