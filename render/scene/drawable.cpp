@@ -70,6 +70,9 @@ std::optional<Eigen::Vector3f> skin_about(const TriMesh& eyes, std::span<const f
   return Eigen::Vector3f(sum / count);
 }
 
+/// Tongues bend in pictures alone.
+bool keeps_shape(Role role) { return is_rigid(role) && role != Role::tongue; }
+
 struct Prepared {
   std::vector<Eigen::Vector3f> positions, normals;
 };
@@ -111,7 +114,7 @@ std::vector<Drawable> make_drawables(std::span<const Part* const> parts, const M
     even_rim(positions, uneven);
     const auto& triangles = own.empty() ? part.mesh.triangles : own;
     if (!own.empty()) vertex_normals(positions, triangles, normals);
-    const auto use = is_rigid(part.role) ? GpuMesh::Use::still : GpuMesh::Use::moving;
+    const auto use = keeps_shape(part.role) ? GpuMesh::Use::still : GpuMesh::Use::moving;
     const bool own_colors = part.mesh.colors.size() == positions.size();
     const auto material = material_of(part.role);
     std::vector<float> curvature;
@@ -258,7 +261,7 @@ void Drawable::cover(std::span<const Eigen::Vector3i> closed_otherwise) {
 }
 
 const GpuMesh& Drawable::rest_mesh() {
-  if (is_rigid(part->role)) return mesh;
+  if (keeps_shape(part->role)) return mesh;
   if (!at_rest) {
     std::vector<Eigen::Vector3f> positions, normals;
     for (const auto& v : part->mesh.vertices) positions.push_back(v.cast<float>());

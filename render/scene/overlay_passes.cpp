@@ -156,8 +156,8 @@ void OverlayPasses::caps(std::span<const DrawItem> items, const PictureView& vie
   glDisable(GL_CULL_FACE);
   glStencilMask(0xff);
   glClearStencil(0);
-  const auto tongue = std::find_if(
-      items.begin(), items.end(), [](const DrawItem& item) { return item.role() == Role::tongue; });
+  const bool tongue = std::any_of(items.begin(), items.end(),
+                                  [](const DrawItem& item) { return item.role() == Role::tongue; });
   for (const auto* item : cut) {
     const bool hollow = mouth && item->role() == Role::face;
     item->drawable->cover(hollow ? mouth->fan() : std::vector<Eigen::Vector3i>());
@@ -168,9 +168,8 @@ void OverlayPasses::caps(std::span<const DrawItem> items, const PictureView& vie
     });
     if (!hollow) continue;
     for (const SectionSolid& solid : within) {
-      if (solid.with_tongue && tongue == items.end()) continue;  // hidden
-      cap(*item, solid.with_tongue ? tongue->model : Eigen::Matrix4f(Eigen::Matrix4f::Identity()),
-          solid.color, view, [&] { solid.mesh.draw(); });
+      if (solid.with_tongue && !tongue) continue;  // hidden
+      cap(*item, Eigen::Matrix4f::Identity(), solid.color, view, [&] { solid.mesh.draw(); });
     }
   }
   glDepthFunc(GL_LESS);

@@ -15,6 +15,8 @@
 #include "render/scene/overlay_passes.h"
 #include "render/scene/passes.h"
 #include "render/scene/picture_target.h"
+#include "render/scene/section_anatomy.h"
+#include "render/scene/tongue_shape.h"
 #include "sim/frame/body_poses.h"
 
 namespace condyle {
@@ -68,8 +70,9 @@ struct SceneRenderer::State {
   // For cranial drawables by number, once the skin was opaque: without slight protrusions from it;
   // none where nothing protrudes.
   std::map<std::size_t, std::optional<Drawable>> beneath;
-  std::optional<MouthCavity> mouth;  // from the first picture of an opaque face on
-  std::optional<std::vector<SectionSolid>> section_solids;  // from the first section on
+  std::optional<MouthCavity> mouth;               // from the first picture of an opaque face on
+  std::optional<SectionAnatomy> section_anatomy;  // from the first section on
+  TongueShape tongue_shape;
   GpuPoints contacts;
   // State of the last frame:
   std::vector<Pose> poses;  // of each drawable
@@ -109,6 +112,7 @@ struct SceneRenderer::State {
                    std::span<const DrawItem> items) const;
   float at_rest(std::span<const DrawItem> items) const;
   std::optional<DrawItem> mouth_cavity(std::span<const DrawItem> items, const PictureView& view);
+  std::span<const SectionSolid> section_solids(const PictureView& view);
   bool leaves_ghost(const DrawItem& item, const Ghost& ghost) const;
 };
 
@@ -208,6 +212,7 @@ void SceneRenderer::State::place(const BodyPoses& at) {
     if (part.body == cranium_body || part.body == lower_jaw || drawables[i].box.isEmpty()) continue;
     reached.extend(DrawItem{&drawables[i], 1, matrix_of(poses[i])}.box());
   }
+  tongue_shape.send(drawables, poses);
 }
 
 Drawable* SceneRenderer::State::first_face() {
@@ -255,6 +260,12 @@ std::optional<DrawItem> SceneRenderer::State::mouth_cavity(std::span<const DrawI
   item.clipped = face->clipped;
   item.holed = face->holed;
   return item;
+}
+
+std::span<const SectionSolid> SceneRenderer::State::section_solids(const PictureView& view) {
+  if (!view.sectioned) return {};
+  if (!section_anatomy) section_anatomy.emplace(parts);
+  return section_anatomy->place(X_CM);
 }
 
 bool SceneRenderer::State::leaves_ghost(const DrawItem& item, const Ghost& ghost) const {
@@ -467,10 +478,7 @@ void SceneRenderer::draw(const Camera& camera, const PictureSettings& settings,
   auto surfaces = items;
   if (mouth) surfaces.push_back(*mouth);
   s.passes.opaque(surfaces, view);
-  if (view.sectioned && !s.section_solids) s.section_solids = condyle::section_solids(s.parts);
-  s.overlays.caps(items, view, mouth ? &*s.mouth : nullptr,
-                  view.sectioned ? std::span<const SectionSolid>(*s.section_solids)
-                                 : std::span<const SectionSolid>());
+  s.overlays.caps(items, view, mouth ? &*s.mouth : nullptr, s.section_solids(view));
   s.passes.background(view);
   if (settings.contacts) s.passes.contacts(s.contacts, view, !view.opaque_face);
   for (const auto& item : items)
