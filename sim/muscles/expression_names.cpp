@@ -41,6 +41,19 @@ const std::vector<NamedExpression>& named_expressions() {
         {"orbicularis_oris_marginal", 0.3},
         {"buccinator", 0.2},
         {"mentalis", 0.3}}},
+      {"lips-shut",
+       "",
+       {{"orbicularis_oris_marginal", 0.7},
+        {"risorius", 0.6},
+        {"buccinator", 0.5},
+        {"mentalis", 0.5}}},
+      {"f",
+       "",
+       {{"orbicularis_oris_marginal", 0.3},
+        {"risorius", 0.3},
+        {"mentalis", 0.8},
+        {"levator_labii_superioris", 0.4},
+        {"levator_labii_alaeque_nasi", 0.3}}},
       {"AU1", "inner brow raiser", {{"frontalis_medial", 1}}},
       {"AU2", "outer brow raiser", {{"frontalis_lateral", 1}}},
       {"AU4", "brow lowerer", {{"corrugator", 1}, {"procerus", 1}}},
@@ -56,6 +69,7 @@ const std::vector<NamedExpression>& named_expressions() {
       {"AU20", "lip stretcher", {{"risorius", 1}}},
       {"AU22", "lip funneler", {{"orbicularis_oris_peripheral", 1}}},
       {"AU23", "lip tightener", {{"orbicularis_oris_marginal", 1}}},
+      {"AU24", "lip pressor", {{"orbicularis_oris_marginal", 1}, {"mentalis", 0.5}}},
   };
   return all;
 }

@@ -43,15 +43,19 @@ const MuscledFace& muscled_face() {
   return face;
 }
 
-/// The end of an expression in steps of 10 ms.
-TissueState state_of(const MuscledFace& face, const std::string& spec, int threads = 2) {
+/// The end of an expression in steps of 10 ms; the jaw moves down meanwhile.
+TissueState state_of(const MuscledFace& face, const std::string& spec, int threads = 2,
+                     double jaw_down_mm = 0) {
   const Expression expression = make_expression(spec, face.muscles);
   TissueState state = rest_tissue(*face.model);
   TissueWarmStart warm;
   TissueBudget budget;
   budget.threads = threads;
   for (int i = 1; i <= 60; ++i) {
-    state = solve_tissue(*face.model, state, {}, budget, warm, expression.at(0.01 * i));
+    std::vector<Pose> poses;
+    if (jaw_down_mm > 0)
+      poses = {{}, {.R = Eigen::Quaterniond::Identity(), .t = {0, 0, -jaw_down_mm * i / 60}}};
+    state = solve_tissue(*face.model, state, poses, budget, warm, expression.at(0.01 * i));
     EXPECT_EQ(state.inverted_prisms, 0) << spec << " at " << i;
     EXPECT_FALSE(state.reused) << spec << " at " << i;
   }
@@ -134,17 +138,60 @@ TEST(FaceMuscles, AKissNarrowsTheMouthAndBringsTheLipsForward) {
   EXPECT_LT(face.moved(kiss, "labrale_inferius").y(), -1.5);
 }
 
+/// Height of the lower lip's edge above its place at rest, in the middle.
+double lower_lip_up(const MuscledFace& face, const TissueState& state) {
+  constexpr double below_lip_line_mm = 1.5;
+  const Vector3d at = *face.patient.landmarks.find("stomion") - Vector3d(0, 0, below_lip_line_mm);
+  return (carried_point(*face.model, state, at) -
+          carried_point(*face.model, rest_tissue(*face.model), at))
+      .z();
+}
+
+/// With the jaw a little open, as at rest and in speech.
+void expect_lip_closure(const MuscledFace& face, double jaw_down_mm) {
+  const double relaxed = lower_lip_up(face, state_of(face, "smile:0", 2, jaw_down_mm));
+  EXPECT_LT(relaxed, -0.6 * jaw_down_mm) << "the lip goes with the jaw";
+  for (const char* name : {"lips-shut", "f"}) {
+    SCOPED_TRACE(name);
+    const TissueState state = state_of(face, name, 2, jaw_down_mm);
+    EXPECT_LT(state.penetration_mm, 0.2);
+    const double up = lower_lip_up(face, state);
+    EXPECT_GT(up, relaxed + 0.5);
+    EXPECT_LT(up, 3);
+    if (name == std::string("f"))
+      EXPECT_GT(face.moved(state, "labrale_superius").z(), 1) << "shows the incisors' edges";
+    else
+      EXPECT_LT(face.moved(state, "labrale_superius").z(), 0) << "meets the lower lip";
+  }
+}
+
+TEST(FaceMuscles, LipsCloseAndTheLowerLipRisesToTheUpperTeeth) {
+  expect_lip_closure(muscled_face(), 2.5);
+}
+
+const MuscledFace& measured_face() {
+  const auto folder = test::real_data() / "case-badin";
+  static const MuscledFace face(
+      true, import_meshes({.files = {{Role::maxilla, folder / "maxilla_capped.ply"},
+                                     {Role::mandible, folder / "mandible.ply"},
+                                     {Role::face, folder / "face_skin.ply"}},
+                           .landmarks = folder / "markers.csv",
+                           .name = "badin",
+                           .face_muscles = folder / "face_muscles.csv"}));
+  return face;
+}
+
+TEST(FaceMuscles, AMeasuredPatientClosesHisLipsWithHisOwn) {
+  if (!std::filesystem::exists(test::real_data() / "case-badin"))
+    GTEST_SKIP() << "real anatomy absent";
+  expect_lip_closure(measured_face(), 2.5);
+}
+
 /// A measured patient's own muscles, with the strengths of the built-in patient's.
 TEST(FaceMuscles, AMeasuredPatientSmilesWithHisOwn) {
-  const auto folder = test::real_data() / "case-badin";
-  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "real anatomy absent";
-  const MuscledFace face(true,
-                         import_meshes({.files = {{Role::maxilla, folder / "maxilla_capped.ply"},
-                                                  {Role::mandible, folder / "mandible.ply"},
-                                                  {Role::face, folder / "face_skin.ply"}},
-                                        .landmarks = folder / "markers.csv",
-                                        .name = "badin",
-                                        .face_muscles = folder / "face_muscles.csv"}));
+  if (!std::filesystem::exists(test::real_data() / "case-badin"))
+    GTEST_SKIP() << "real anatomy absent";
+  const MuscledFace& face = measured_face();
   for (const FaceMuscle& own : face.patient.face_muscles) EXPECT_EQ(own.limit_N, 0) << own.name;
   expect_smile(face, state_of(face, "smile"));
 }
