@@ -184,7 +184,9 @@ PicturePlan parse(const PictureOptions& options, const Case* patient) {
       throw InputError(
           "--life: is for looks alone; leave --wipe, --before-after, --overlay patches, "
           "--show distance and --show displacement out");
-    settings.life = life_about(patient ? middle_of_joints(*patient) : Vector3d(0, 0, 0));
+    settings.life =
+        patient ? life_about(middle_of_joints(*patient), patient->landmarks.find("pronasale"))
+                : life_about(Vector3d(0, 0, 0));
   }
   plan.words = {{"show", options.show},
                 {"distances", plan.map == SurfaceMap::distance

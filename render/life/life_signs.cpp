@@ -65,8 +65,8 @@ double breath(double time_s) {
 
 }  // namespace
 
-Life life_about(const Eigen::Vector3d& condyles) {
-  return {condyles + Eigen::Vector3d(0, 20, -22)};
+Life life_about(const Eigen::Vector3d& condyles, const std::optional<Eigen::Vector3d>& nose_tip) {
+  return {condyles + Eigen::Vector3d(0, 20, -22), nose_tip};
 }
 
 LifeSigns life_signs(double time_s, const Pose& X_CM) {

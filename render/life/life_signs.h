@@ -13,11 +13,14 @@ struct Life {
   /// A point of the transverse axis about which the head nods: between the atlanto-occipital
   /// joints, mm.
   Eigen::Vector3d nodding_axis = Eigen::Vector3d::Zero();
+  /// Landmark pronasale at rest, mm: the nostrils beside it breathe.
+  std::optional<Eigen::Vector3d> nose_tip = {};
   bool operator==(const Life&) const = default;
 };
 
 /// Nodding axis by the midpoint of the condyles of the mandible; its offset was estimated.
-Life life_about(const Eigen::Vector3d& condyles);
+Life life_about(const Eigen::Vector3d& condyles,
+                const std::optional<Eigen::Vector3d>& nose_tip = std::nullopt);
 
 /// What a face does by itself. Values between published extremes; the choice at each time is
 /// pseudo-random.

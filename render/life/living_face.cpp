@@ -21,7 +21,8 @@ float smooth(float t) { return static_cast<float>(smooth_step(t)); }
 }  // namespace
 
 LivingFace::LivingFace(std::span<const Part> parts, std::span<const Vector3f> rest,
-                       std::span<const Eigen::Vector3i> triangles) {
+                       std::span<const Eigen::Vector3i> triangles,
+                       const std::optional<Eigen::Vector3d>& nose_tip) {
   eyes_.resize(parts.size());
   for (std::size_t i = 0; i < parts.size(); ++i) {
     if (parts[i].role != Role::eyes) continue;
@@ -37,7 +38,7 @@ LivingFace::LivingFace(std::span<const Part> parts, std::span<const Vector3f> re
   for (auto& eyes : eyes_)
     if (eyes) eyes->grow_from(lids_);
   find_neck(parts, rest);
-  find_nostrils(rest);
+  if (nose_tip) find_nostrils(rest, nose_tip->cast<float>());
 }
 
 /// The skin below the jaw, down to its end, which stays with the trunk.
@@ -63,10 +64,7 @@ void LivingFace::find_neck(std::span<const Part> parts, std::span<const Vector3f
 }
 
 /// The wings of the nose, beside and behind its tip.
-void LivingFace::find_nostrils(std::span<const Vector3f> rest) {
-  if (rest.empty()) return;
-  const Vector3f tip = *std::min_element(
-      rest.begin(), rest.end(), [](const Vector3f& a, const Vector3f& b) { return a.y() < b.y(); });
+void LivingFace::find_nostrils(std::span<const Vector3f> rest, const Vector3f& tip) {
   for (std::size_t v = 0; v < rest.size(); ++v)
     for (const float side : {-1.f, 1.f}) {
       const Vector3f ala(side * ala_from_tip.x(), ala_from_tip.y(), ala_from_tip.z());
@@ -101,14 +99,15 @@ void LivingFace::move_eyes(std::size_t part, const LifeSigns& signs, std::span<V
 
 std::string LivingFace::shortfall() const {
   std::string lacks;
+  const auto add = [&](const char* text) {
+    lacks += (lacks.empty() ? "" : "; ") + std::string(text);
+  };
   if (eyeballs_ == 0)
-    lacks = "no eyeballs were found: eyes and lids do not move";
+    add("no eyeballs were found: eyes and lids do not move");
   else if (lids_.empty())
-    lacks = "no open lids were found: the eyes do not blink";
-  if (neck_.empty()) {
-    if (!lacks.empty()) lacks += "; ";
-    lacks += "no neck was found: the whole head turns, and the neck does not breathe";
-  }
+    add("no open lids were found: the eyes do not blink");
+  if (neck_.empty()) add("no neck was found: the whole head turns, and the neck does not breathe");
+  if (nostrils_.empty()) add("no landmark pronasale on the face: the nostrils do not breathe");
   return lacks;
 }
 

@@ -17,9 +17,10 @@ namespace condyle {
 /// A drawn face and its eyes, moved by signs of life. Deterministic.
 class LivingFace {
  public:
-  /// parts: of the patient, at rest. rest, triangles: of the drawn face.
+  /// parts: of the patient, at rest. rest, triangles: of the drawn face. nose_tip: see Life.
   LivingFace(std::span<const Part> parts, std::span<const Eigen::Vector3f> rest,
-             std::span<const Eigen::Vector3i> triangles);
+             std::span<const Eigen::Vector3i> triangles,
+             const std::optional<Eigen::Vector3d>& nose_tip);
 
   /// Moves the present vertices of the drawn face.
   void move_face(const Life& life, const LifeSigns& signs, std::span<Eigen::Vector3f> places) const;
@@ -39,7 +40,7 @@ class LivingFace {
     Eigen::Vector3f breathes;  // displacement after inspiration, mm
   };
   void find_neck(std::span<const Part> parts, std::span<const Eigen::Vector3f> rest);
-  void find_nostrils(std::span<const Eigen::Vector3f> rest);
+  void find_nostrils(std::span<const Eigen::Vector3f> rest, const Eigen::Vector3f& nose_tip);
 
   std::vector<std::optional<LivingEyes>> eyes_;  // by part
   std::vector<UpperLid> lids_;

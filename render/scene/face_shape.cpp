@@ -42,7 +42,8 @@ std::string life_note(std::span<const Part> parts, const PictureSettings& settin
   if (!shows_life(parts, settings))
     return "look only: only an opaque, uncut face shows life, so these pictures have none";
   const TriMesh& mesh = face_among(parts)->mesh;
-  const std::string lacks = LivingFace(parts, float_positions(mesh), mesh.triangles).shortfall();
+  const std::string lacks =
+      LivingFace(parts, float_positions(mesh), mesh.triangles, settings.life->nose_tip).shortfall();
   return "look only: blinks, gaze, pupils, breathing and the head's extension are in the pictures "
          "alone" +
          (lacks.empty() ? "" : "; " + lacks);
@@ -68,7 +69,8 @@ void FaceShape::send(std::span<const Part> parts, std::span<Drawable> drawables,
   const TriMesh& rest = face->part->mesh;
   Drawable::FaceLook drawn{.folded = look.folds};
   if (look.life) {
-    if (!living_) living_.emplace(parts, float_positions(rest), face->triangles());
+    if (!living_)
+      living_.emplace(parts, float_positions(rest), face->triangles(), look.life->nose_tip);
     drawn.alive = [&](std::span<Eigen::Vector3f> places) {
       living_->move_face(*look.life, look.signs, places);
     };

@@ -69,10 +69,13 @@ std::optional<Life> Window::State::life() const {
   const Look& look = view.look;
   if (!look.life || look.wipe || look.displacement || view.distances) return std::nullopt;
   Eigen::AlignedBox3d joints;
-  for (const Landmark& landmark : view.landmarks)
+  std::optional<Eigen::Vector3d> nose_tip;
+  for (const Landmark& landmark : view.landmarks) {
     if (landmark.name == "left_condyle" || landmark.name == "right_condyle")
       joints.extend(landmark.at_rest);
-  return life_about(joints.isEmpty() ? box.center() : joints.center());
+    if (landmark.name == "pronasale") nose_tip = landmark.at_rest;
+  }
+  return life_about(joints.isEmpty() ? box.center() : joints.center(), nose_tip);
 }
 
 PictureSettings Window::State::settings() const {

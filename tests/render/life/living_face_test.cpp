@@ -36,7 +36,8 @@ class LivingPatient : public testing::Test {
   const Part& face_ = part_of(patient(), Role::face);
   const Part& eyes_ = part_of(patient(), Role::eyes);
   std::vector<Vector3f> rest_ = floats(face_.mesh);
-  LivingFace living_{patient().parts, rest_, face_.mesh.triangles};
+  const std::optional<Vector3d> nose_tip_ = patient().landmarks.find("pronasale");
+  LivingFace living_{patient().parts, rest_, face_.mesh.triangles, nose_tip_};
 
   std::vector<Vector3f> moved(const LifeSigns& signs) const {
     auto places = rest_;
@@ -152,6 +153,34 @@ TEST_F(LivingPatient, ABreathMovesTheLowerNeckAndTheNostrilsByMillimetresAtMost)
   EXPECT_LT(neck, 2);
   EXPECT_GT(nose, 0.2f);
   EXPECT_LT(nose, 0.5f);
+}
+
+TEST_F(LivingPatient, TheNostrilsBreatheWhereverTheChinIs) {
+  ASSERT_TRUE(nose_tip_);
+  auto prognathic = rest_;  // the chin lies 30 mm before the tip of the nose
+  int in_front = 0;
+  for (Vector3f& p : prognathic) {
+    const Vector3f off = (p - Vector3f(0, -100, -85)) / 20;
+    p.y() -= 45 * std::exp(-off.squaredNorm());
+    in_front += p.y() < nose_tip_->y() - 10;
+  }
+  ASSERT_GT(in_front, 10);
+  const LivingFace living(patient().parts, prognathic, face_.mesh.triangles, nose_tip_);
+  auto places = prognathic, still = prognathic;
+  living.move_face({}, {.breath = 1}, places);
+  living.move_face({}, {}, still);
+  float nose = 0;
+  for (std::size_t v = 0; v < places.size(); ++v) {
+    const float mm = (places[v] - still[v]).norm();
+    const bool beside_nose = (rest_[v] - nose_tip_->cast<float>()).norm() < 40;
+    if (beside_nose) nose = std::max(nose, mm);
+    if (!beside_nose && rest_[v].z() > -88) {
+      EXPECT_EQ(mm, 0) << rest_[v].transpose();
+    }
+  }
+  EXPECT_GT(nose, 0.2f);
+  const LivingFace unknown(patient().parts, rest_, face_.mesh.triangles, std::nullopt);
+  EXPECT_NE(unknown.shortfall().find("pronasale"), std::string::npos);
 }
 
 }  // namespace
