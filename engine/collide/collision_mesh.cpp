@@ -41,8 +41,8 @@ void build_model(const TriMesh& mesh, fcl::BVHModel<fcl::OBBRSSd>& model) {
 }
 
 struct Surface {
-  explicit Surface(const TriMesh& mesh)
-      : vertices(mesh.vertices), triangles(mesh.triangles), tree(mesh) {}
+  Surface(const TriMesh& mesh, const std::filesystem::path& cache)
+      : vertices(mesh.vertices), triangles(mesh.triangles), tree(BoxTree::stored(mesh, cache)) {}
 
   std::vector<Eigen::Vector3d> vertices;
   std::vector<Eigen::Vector3i> triangles;
@@ -315,9 +315,9 @@ struct CollisionMesh::Tree : Surface {
   using Surface::Surface;
 };
 
-CollisionMesh::CollisionMesh(const TriMesh& mesh) {
+CollisionMesh::CollisionMesh(const TriMesh& mesh, const std::filesystem::path& cache) {
   require_sound(mesh);
-  tree_ = std::make_unique<Tree>(mesh);
+  tree_ = std::make_unique<Tree>(mesh, cache);
   for (const auto& t : mesh.triangles)
     for (const int v : t) box_.add(mesh.vertices[static_cast<std::size_t>(v)]);
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -37,7 +38,9 @@ struct MeshContact {
 class CollisionMesh {
  public:
   /// throws: InputError, see require_sound.
-  explicit CollisionMesh(const TriMesh& mesh);
+  explicit CollisionMesh(const TriMesh& mesh) : CollisionMesh(mesh, {}) {}
+  /// The same with the tree kept in a cache folder, for surfaces of a patient's files.
+  CollisionMesh(const TriMesh& mesh, const std::filesystem::path& cache);
   ~CollisionMesh();
   CollisionMesh(CollisionMesh&&) noexcept;
   CollisionMesh& operator=(CollisionMesh&&) noexcept;

@@ -19,6 +19,8 @@ constexpr ContactLimits any_crossing{.total = 1, .per_region = 1};
 constexpr std::size_t many_faces = 2000;
 // Where the nearest triangles of an earlier pose are as near as this, surfaces probably cross.
 constexpr double probably_crossing_mm = 0.3;
+// Surfaces farther apart do not touch: well above the rounding of a distance.
+constexpr double touching_reach_mm = 1e-3;
 // Teeth modelled with a millimetre of overlap must not excuse a condyle from its fossa.
 constexpr double excused_mm = 10;
 
@@ -68,18 +70,19 @@ std::uint64_t hash_of(const TriMesh& mesh) {
 
 }  // namespace
 
-ColliderShape::ColliderShape(const TriMesh& mesh)
-    : mesh_hash(hash_of(mesh)), surface(mesh), solid(mesh) {}
+ColliderShape::ColliderShape(const TriMesh& mesh, const std::filesystem::path& cache)
+    : mesh_hash(hash_of(mesh)), surface(mesh, cache), solid(mesh) {}
 
 std::shared_ptr<const ColliderShape> ColliderShape::of(
-    const TriMesh& mesh, std::span<const std::shared_ptr<const ColliderShape>> earlier) {
+    const TriMesh& mesh, std::span<const std::shared_ptr<const ColliderShape>> earlier,
+    const std::filesystem::path& cache) {
   if (!earlier.empty()) {
     const std::uint64_t hash = hash_of(mesh);
     for (const auto& shape : earlier)
       if (shape->mesh_hash == hash && shape->solid.face_count() == mesh.triangles.size())
         return shape;
   }
-  return std::make_shared<const ColliderShape>(mesh);
+  return std::make_shared<const ColliderShape>(mesh, cache);
 }
 
 PairContact far_apart(const ColliderPair& pair, double at_least_mm) {
@@ -103,16 +106,21 @@ PairContact query_pair(const ColliderPair& pair, const Pose& X_CA, const Pose& X
     out.triangle_a = first.triangles.a;
     out.triangle_b = first.triangles.b;
   } else {
-    const auto found =
-        options.far_mm < nowhere_mm
-            ? distance_within(options.far_mm, a.surface, X_CA, b.surface, X_CB, start)
-            : distance(a.surface, X_CA, b.surface, X_CB, start);
-    if (!found) return far_apart(pair, std::max(options.far_mm, balls_apart));
-    out.distance_mm = found->distance_mm;
-    out.witness_a = found->witness_a;
-    out.witness_b = found->witness_b;
-    out.triangle_a = found->triangles.a;
-    out.triangle_b = found->triangles.b;
+    const double reach_mm = options.need_distance ? options.far_mm : touching_reach_mm;
+    const auto found = reach_mm < nowhere_mm
+                           ? distance_within(reach_mm, a.surface, X_CA, b.surface, X_CB, start)
+                           : distance(a.surface, X_CA, b.surface, X_CB, start);
+    if (!found && (options.need_distance || balls_apart > 0 ||
+                   !one_encloses_other(a.solid, X_CA, b.solid, X_CB)))
+      return far_apart(pair, std::max(reach_mm, balls_apart));
+    MeshDistance gap;
+    gap.distance_mm = reach_mm;
+    if (found) gap = *found;
+    out.distance_mm = gap.distance_mm;
+    out.witness_a = gap.witness_a;
+    out.witness_b = gap.witness_b;
+    out.triangle_a = gap.triangles.a;
+    out.triangle_b = gap.triangles.b;
   }
   const bool crossing = out.distance_mm == 0;
   if (!crossing && (balls_apart > 0 || !one_encloses_other(a.solid, X_CA, b.solid, X_CB)))

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <limits>
 #include <memory>
 #include <span>
@@ -18,10 +19,12 @@ struct ColliderShape {
   CollisionMesh surface;
   Solid solid;
 
-  explicit ColliderShape(const TriMesh& mesh);
+  /// `cache`: where the tree of boxes is kept; empty: nowhere.
+  explicit ColliderShape(const TriMesh& mesh, const std::filesystem::path& cache = {});
   /// `earlier` if it was made from the same surface, else a new one.
   static std::shared_ptr<const ColliderShape> of(
-      const TriMesh& mesh, std::span<const std::shared_ptr<const ColliderShape>> earlier);
+      const TriMesh& mesh, std::span<const std::shared_ptr<const ColliderShape>> earlier,
+      const std::filesystem::path& cache = {});
 };
 
 /// A surface that takes part in contact.
@@ -66,6 +69,7 @@ struct QueryOptions {
   int max_contacts = 0;
   double far_mm = nowhere_mm;  // beyond this a lower bound of the distance suffices
   bool need_depth = true;      // otherwise only whether they touch
+  bool need_distance = true;   // otherwise only whether they touch, and how deep
 };
 
 /// Result for one pair at one pose. `deepest`: where the depth was measured, if at all.

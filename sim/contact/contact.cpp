@@ -8,6 +8,7 @@
 #include "engine/collide/depenetration.h"
 #include "engine/core/error.h"
 #include "engine/core/parallel.h"
+#include "engine/core/user_cache.h"
 #include "sim/case/pair_rules.h"
 #include "sim/contact/constrained_motion.h"
 #include "sim/contact/contact_state.h"
@@ -35,9 +36,12 @@ void build_colliders(ContactModel::State& state, const Case& patient,
   parallel_for(parts.size(), build_threads, [&](std::size_t i) {
     const auto part = static_cast<std::size_t>(parts[i]);
     const TriMesh& mesh = patient.parts[part].mesh;
+    // Segments change with each edit of their plan.
+    const auto cache =
+        is_piece(patient.parts[part].role) ? std::filesystem::path() : user_cache_folder();
     state.colliders[i] =
         std::make_unique<Collider>(Collider{static_cast<int>(i), parts[i], patient.parts[part].body,
-                                            false, ColliderShape::of(mesh, earlier)});
+                                            false, ColliderShape::of(mesh, earlier, cache)});
   });
   state.pivot.assign(state.bodies.bodies().size(), Eigen::Vector3d::Zero());
   std::vector<double> largest(state.pivot.size(), -1);
@@ -181,7 +185,7 @@ std::vector<bool> ContactModel::State::far_pairs(const BodyPoses& at) const {
 }
 
 ContactSet ContactModel::State::query_all(const BodyPoses& at, const ContactSet* previous,
-                                          int threads) const {
+                                          int threads, Distances distances) const {
   ContactSet set;
   set.at = at;
   set.pairs.resize(pairs.size());
@@ -194,8 +198,11 @@ ContactSet ContactModel::State::query_all(const BodyPoses& at, const ContactSet*
       slot(set, i) = carried(slot(rest, i), X_CA);
     else if (far[i])
       slot(set, i) = far_apart(pair, settings.far_mm);
-    else
-      slot(set, i) = query_pair(pair, X_CA, X_CB, start(previous, i), full_query(i));
+    else {
+      QueryOptions query = full_query(i);
+      query.need_distance = distances == Distances::all;
+      slot(set, i) = query_pair(pair, X_CA, X_CB, start(previous, i), query);
+    }
   });
   return set;
 }
@@ -257,6 +264,11 @@ ContactModel ContactModel::none(const BodyTree& bodies) {
 
 ContactSet ContactModel::find(const BodyPoses& at, const ContactSet* previous, int threads) const {
   return state_->with_complements(state_->query_all(state_->complete(at), previous, threads));
+}
+
+ContactSet ContactModel::find_touching(const BodyPoses& at, int threads) const {
+  return state_->with_complements(
+      state_->query_all(state_->complete(at), nullptr, threads, Distances::of_touching));
 }
 
 namespace {

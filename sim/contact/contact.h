@@ -44,6 +44,10 @@ class ContactModel {
   /// throws: InputError for poses with values that are not finite, here and below.
   ContactSet find(const BodyPoses& at, const ContactSet* previous, int threads = 1) const;
 
+  /// As `find`, several times as fast: of pairs that do not touch, only that they are apart
+  /// (PairContact::distance_is_bound).
+  ContactSet find_touching(const BodyPoses& at, int threads = 1) const;
+
   struct Slide {
     BodyPoses at;
     bool stopped = false;  // contact kept a body from its target

@@ -11,6 +11,9 @@ namespace condyle {
 
 class Slider;
 
+/// Distances to measure: all, or none but whether surfaces touch.
+enum class Distances { all, of_touching };
+
 /// Data of a contact model: colliders, pairs, and their state at rest.
 struct ContactModel::State {
   ContactSettings settings;
@@ -65,7 +68,8 @@ struct ContactModel::State {
   std::vector<bool> far_pairs(const BodyPoses& at) const;
   /// Measures pairs that are only bounded there.
   void measure_bounds(const BodyPoses& at, ContactSet& set) const;
-  ContactSet query_all(const BodyPoses& at, const ContactSet* previous, int threads) const;
+  ContactSet query_all(const BodyPoses& at, const ContactSet* previous, int threads,
+                       Distances distances = Distances::all) const;
   /// Includes the depths of the complements in those of their pairs.
   ContactSet with_complements(ContactSet set) const;
 };

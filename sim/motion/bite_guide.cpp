@@ -7,6 +7,7 @@
 #include <functional>
 #include <vector>
 
+#include "engine/core/user_cache.h"
 #include "sim/motion/condylar_kinematics.h"
 
 namespace condyle {
@@ -80,7 +81,9 @@ double teeth_apart_at_rest_mm(const Case& patient) {
   const auto teeth = occluding_surfaces(patient, 0.5 * (*left + *right), *incisor);
   if (teeth.upper.empty() || teeth.lower.empty()) return 0;
   TrianglePair start;
-  return distance(CollisionMesh(teeth.upper), {}, CollisionMesh(teeth.lower), {}, start)
+  const auto cache = user_cache_folder();
+  return distance(CollisionMesh(teeth.upper, cache), {}, CollisionMesh(teeth.lower, cache), {},
+                  start)
       .distance_mm;
 }
 
@@ -97,8 +100,9 @@ BiteGuide::BiteGuide(const Case& patient, const JawJoints& joints,
     notes_ = "without teeth, an incisal table guides protrusion and laterotrusion";
     return;
   }
-  lower_.emplace(lower);
-  upper_.emplace(upper);
+  const auto cache = user_cache_folder();
+  lower_.emplace(lower, cache);
+  upper_.emplace(upper, cache);
   for (const auto& v : lower.vertices)
     lever_mm_ = std::max(lever_mm_, std::hypot(v.y() - hinge.y(), v.z() - hinge.z()));
   lever_mm_ *= 1.1;  // allowance for the inferior translation of the condyles

@@ -57,7 +57,8 @@ std::optional<JointSurfaces> JointSurfaces::find(const Case& patient) {
       if (part.body == cranium_body) append_near(part.mesh, *center, fossa_radius_mm, fossa);
     }
     if (condyle.empty() || fossa.empty()) return std::nullopt;
-    Side side{CollisionMesh(condyle), CollisionMesh(fossa), 0, 0, {}};
+    const auto cache = user_cache_folder();
+    Side side{CollisionMesh(condyle, cache), CollisionMesh(fossa, cache), 0, 0, {}};
     side.hash = hash_of(fossa, hash_of(condyle, hash_start));
     const MeshDistance rest = distance(side.fossa, {}, side.condyle, {});
     if (rest.distance_mm < min_gap_mm || rest.distance_mm > largest_gap_mm) return std::nullopt;
@@ -87,6 +88,11 @@ double JointSurfaces::gap_mm(JawSide side, const Pose& X_CM, TrianglePair& start
   const MeshDistance now = distance(joint.fossa, {}, joint.condyle, X_CM, start);
   start = now.triangles;
   return now.distance_mm;
+}
+
+bool JointSurfaces::nearer_than(double limit_mm, JawSide side, const Pose& X_CM) const {
+  const Side& joint = at(side);
+  return distance_within(limit_mm, joint.fossa, {}, joint.condyle, X_CM).has_value();
 }
 
 }  // namespace condyle

@@ -34,6 +34,9 @@ class JointSurfaces {
   /// Distance from condyle to fossa on one side, mm. `start` speeds up the next query nearby.
   double gap_mm(JawSide side, const Pose& X_CM, TrianglePair& start) const;
 
+  /// gap_mm < limit_mm, decided much faster.
+  bool nearer_than(double limit_mm, JawSide side, const Pose& X_CM) const;
+
  private:
   struct Side {
     CollisionMesh condyle, fossa;

@@ -85,27 +85,24 @@ struct DiscLimits {
 };
 
 /// Whether a condyle comes so near to its fossa that it would crush the disc.
-bool crushes(const JawJoints& joints, const Pose& X_CM, const DiscLimits& least, TrianglePair& left,
-             TrianglePair& right) {
+bool crushes(const JawJoints& joints, const Pose& X_CM, const DiscLimits& least) {
   if (!joints.surfaces()) return false;
   const JointSurfaces& joint = *joints.surfaces();
-  return joint.gap_mm(JawSide::left, X_CM, left) < least.left ||
-         joint.gap_mm(JawSide::right, X_CM, right) < least.right;
+  return joint.nearer_than(least.left, JawSide::left, X_CM) ||
+         joint.nearer_than(least.right, JawSide::right, X_CM);
 }
 
 /// The largest rotation up to `end` that is reached without contact of bone.
 double free_rotation(const OpeningPath& path, double end, const DiscLimits& disc,
                      const ContactModel& contacts, const Progress& progress) {
   constexpr int steps = 120;
-  ContactSet last = contacts.at_rest();
-  TrianglePair left, right;
   for (int i = 1; i <= steps; ++i) {
     report(progress, "searching the opening that the bones permit",
            static_cast<double>(i - 1) / steps);
     const Pose X_CM = path.joints.pose(path.inputs(end * i / steps));
-    if (crushes(path.joints, X_CM, disc, left, right)) return end * (i - 1) / steps;
-    last = contacts.find(BodyPoses(X_CM), &last, 2);
-    if (!is_free(last, contacts.at_rest())) return end * (i - 1) / steps;
+    if (crushes(path.joints, X_CM, disc) ||
+        !is_free(contacts.find_touching(BodyPoses(X_CM), 2), contacts.at_rest()))
+      return end * (i - 1) / steps;
   }
   return end;
 }

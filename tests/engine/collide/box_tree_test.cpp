@@ -3,8 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstring>
+#include <filesystem>
 #include <random>
 
+#include "engine/core/files.h"
+#include "tests/support/program.h"
 #include "tests/support/shapes.h"
 
 namespace condyle {
@@ -90,6 +94,33 @@ TEST(BoxTree, BoxesOfAFlatStripLieAlongIt) {
   EXPECT_NEAR(half[0], 0, 1e-5);
   EXPECT_LT(half[1], width);
   EXPECT_LT(half[2], 0.5 * (length + width));
+}
+
+TEST(BoxTree, ReadFromTheCacheIsTheSameToTheBitAndADamagedOneIsBuiltAgain) {
+  const TriMesh mesh = test::sphere(5, 12, {3, -4, -13}, 0.02);
+  const BoxTree built(mesh);
+  const auto same = [&](const BoxTree& tree) {
+    return tree.reach_mm == built.reach_mm && tree.region == built.region &&
+           tree.boxes.size() == built.boxes.size() &&
+           std::memcmp(tree.boxes.data(), built.boxes.data(),
+                       built.boxes.size() * sizeof(BoxPair)) == 0;
+  };
+  const test::Folder folder;
+  EXPECT_TRUE(same(BoxTree::stored(mesh, folder.path())));
+  const auto file = std::filesystem::directory_iterator(folder.path())->path();
+  const std::string whole = read_file(file);
+  EXPECT_TRUE(same(BoxTree::stored(mesh, folder.path())));
+  std::string damaged = whole;
+  damaged[damaged.size() / 2] = static_cast<char>(damaged[damaged.size() / 2] ^ 1);
+  for (const std::string& bytes : {damaged, whole.substr(0, whole.size() / 2), std::string()}) {
+    write_file(file, bytes);
+    EXPECT_TRUE(same(BoxTree::stored(mesh, folder.path())));
+    EXPECT_EQ(read_file(file), whole);
+  }
+  TriMesh other = mesh;
+  other.vertices[7].x() += 1e-9;
+  BoxTree::stored(other, folder.path());
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 2);
 }
 
 }  // namespace

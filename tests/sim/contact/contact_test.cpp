@@ -60,6 +60,26 @@ TEST(ContactModel, MixedUpJawsStopWhereTheyMeetInsteadOfSearching) {
   EXPECT_FALSE(model.slide({}, target_poses(shift(0, 0, -10)), &model.at_rest()).stopped);
 }
 
+TEST(ContactModel, TouchingPairsAreFoundWithoutDistancesAsWithThem) {
+  // Balls in a box with a wall: apart, crossing, and entirely inside.
+  TriMesh room = test::box({-30, -30, 0}, {30, 30, 30});
+  const ContactModel model(two_bones(room, test::sphere(4, 6, {0, 0, -12})));
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> aside(-45, 45), up(-10, 60);
+  int apart = 0, crossing = 0, inside = 0;
+  for (int i = 0; i < 200; ++i) {
+    const Pose X = shift(aside(random), aside(random), up(random));
+    const PairContact known = model.find(X, nullptr).pairs[0];
+    const PairContact quick = model.find_touching(X).pairs[0];
+    ASSERT_EQ(quick.touching, known.touching) << X.t.transpose();
+    EXPECT_EQ(quick.depth_mm, known.depth_mm);
+    (!known.touching ? apart : known.depth_mm > 12 ? inside : crossing) += 1;
+  }
+  EXPECT_GT(apart, 20);
+  EXPECT_GT(crossing, 20);
+  EXPECT_GT(inside, 10);
+}
+
 TEST(ContactModel, WitnessesOfTouchingSurfacesAreTheDeepestPoint) {
   // A ball that sinks 2 mm into the flat lower side of a box: the rim is 6.6 mm from its top.
   const ContactModel model(
