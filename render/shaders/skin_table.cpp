@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -38,15 +39,19 @@ SkinTable make_skin_table() {
     const double radius_mm = 1 / curvature;
     // The profile is narrow on a large sphere: only the arc where it is significant is sampled.
     const double reach = std::min(std::numbers::pi, 9 / radius_mm);
+    std::array<double, steps> turns;
+    std::array<Eigen::Vector3d, steps> weights;
+    Eigen::Vector3d whole = Eigen::Vector3d::Zero();
+    for (std::size_t i = 0; i < steps; ++i) {
+      turns[i] = reach * (-1 + (2.0 * static_cast<double>(i) + 1) / steps);
+      weights[i] = profile(2 * radius_mm * std::sin(std::abs(turns[i]) / 2));
+      whole += weights[i];
+    }
     for (int column = 0; column < SkinTable::width; ++column) {
       const double angle = std::acos(-1 + 2.0 * column / (SkinTable::width - 1));
-      Eigen::Vector3d light = Eigen::Vector3d::Zero(), whole = Eigen::Vector3d::Zero();
-      for (int i = 0; i < steps; ++i) {
-        const double turn = reach * (-1 + (2.0 * i + 1) / steps);
-        const Eigen::Vector3d weight = profile(2 * radius_mm * std::sin(std::abs(turn) / 2));
-        light += std::max(0.0, std::cos(angle + turn)) * weight;
-        whole += weight;
-      }
+      Eigen::Vector3d light = Eigen::Vector3d::Zero();
+      for (std::size_t i = 0; i < steps; ++i)
+        light += std::max(0.0, std::cos(angle + turns[i])) * weights[i];
       for (int k = 0; k < 3; ++k)
         table.rgb[3 * (row * SkinTable::width + column) + k] =
             static_cast<std::uint8_t>(std::lround(255 * std::clamp(light[k] / whole[k], 0.0, 1.0)));
