@@ -5,6 +5,9 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
+#include <tuple>
+#include <utility>
 
 #include "engine/core/error.h"
 #include "engine/core/files.h"
@@ -36,6 +39,7 @@ struct RecordOptions {
   PictureOptions picture = {};
   bool film = false;
   bool resume = false;
+  std::vector<std::string> also = {};  // FOLDER=PARTS
 };
 
 /// Times of the frames over the whole motion, both ends included.
@@ -98,10 +102,43 @@ std::string with_expression(const std::string& report, const fs::path& folder,
   return json.dump(2) + "\n";
 }
 
+/// A folder and what is shown in its pictures, of FOLDER=PARTS. throws: InputError.
+std::pair<fs::path, std::string> folder_and_parts(const std::string& text) {
+  const auto equals = text.rfind('=');
+  if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
+    throw InputError("--also " + text +
+                     ": must be FOLDER=PARTS, e.g. out/glass=bones,teeth,skin:0.3");
+  return {text.substr(0, equals), text.substr(equals + 1)};
+}
+
 /// Checks the command line as far as possible without a patient.
 void check_early(const RecordOptions& options) {
   check_motion(options.motion);
   if (options.pictures) check_pictures(options.picture);
+  const auto absolute = [](const fs::path& folder) {
+    fs::path path = fs::absolute(folder / "").lexically_normal();
+    return path;
+  };
+  std::set<fs::path> used{absolute(options.out)};
+  for (const auto& text : options.also)
+    if (!used.insert(absolute(folder_and_parts(text).first)).second)
+      throw InputError("--also " + text + ": another recording of this command has that folder");
+}
+
+/// The looks of --also. throws: InputError.
+std::vector<OtherLook> other_looks(const RecordOptions& options, const PicturePlan& plan,
+                                   const Case& patient) {
+  std::vector<OtherLook> looks;
+  for (const auto& text : options.also) {
+    PictureOptions picture = options.picture;
+    fs::path folder;
+    std::tie(folder, picture.show) = folder_and_parts(text);
+    PicturePlan look = parse_pictures(picture, patient);
+    if (look.map != plan.map)
+      throw InputError("--also " + text + ": maps of distance or displacement are drawn by --show");
+    looks.push_back({folder, std::move(look.settings), std::move(look.words)});
+  }
+  return looks;
 }
 
 /// Left of a wipe is the patient before the operation, if there is one.
@@ -146,7 +183,11 @@ int run_record(const RecordOptions& options, const CommonOptions& common) {
   std::optional<FrameRenderer> pictures;  // destroyed first: it passes frames to the trace
   if (options.pictures)
     pictures.emplace(
-        *plan, RecordingFiles{.out = options.out, .film = options.film, .resume = options.resume},
+        *plan,
+        RecordingFiles{.out = options.out,
+                       .film = options.film,
+                       .resume = options.resume,
+                       .others = other_looks(options, *plan, scene.patient)},
         RecordingSubject{.scene = scene,
                          .motion = motion,
                          .settings = settings,
@@ -243,6 +284,13 @@ void add_record(Commands& commands) {
       "condyle record --motion opening --out out --show bones,teeth,skin:0.4 --film", options);
   command.add_flag("--film", options->film, "Also make film.mp4 (needs the ffmpeg program)");
   command.add_flag("--resume", options->resume, "Complete an interrupted recording");
+  command
+      .add_option("--also", options->also,
+                  "Draw the same motion with other parts, too, into another folder, e.g. "
+                  "out/glass=bones,teeth,skin:0.3; repeatable. It is simulated once; trace and "
+                  "report are in --out")
+      ->type_name("FOLDER=PARTS")
+      ->allow_extra_args(false);
   add_pictures(command, options->picture);
   add_details(command, options->motion);
 }

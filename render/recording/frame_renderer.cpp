@@ -65,14 +65,14 @@ RecordingCamera camera_of(const std::string& text, const PicturePlan& plan, cons
 /// A camera and its recording.
 struct PlannedView {
   RecordingCamera camera;
+  PictureSettings settings;
   RecorderSettings recorder;
 };
 
-std::vector<PlannedView> planned_views(const PicturePlan& plan, const RecordingFiles& files,
-                                       const RecordingSubject& subject) {
+void plan_views(const PicturePlan& plan, const RecordingFiles& files,
+                const RecordingSubject& subject, std::vector<PlannedView>& views) {
   const Case& patient = subject.scene.patient;
   const auto [low, high] = view_box(patient, subject.motion, plan);
-  std::vector<PlannedView> views;
   for (const auto& text : plan.cameras) {
     RecordingCamera camera = camera_of(text, plan, patient, {low, high});
     RecorderSettings recorder{
@@ -86,7 +86,21 @@ std::vector<PlannedView> planned_views(const PicturePlan& plan, const RecordingF
         .identity = subject.identity};
     recorder.identity["camera"] = camera.description();
     recorder.identity.insert(plan.words.begin(), plan.words.end());
-    views.push_back({std::move(camera), std::move(recorder)});
+    views.push_back({std::move(camera), plan.settings, std::move(recorder)});
+  }
+}
+
+std::vector<PlannedView> planned_views(const PicturePlan& plan, const RecordingFiles& files,
+                                       const RecordingSubject& subject) {
+  std::vector<PlannedView> views;
+  plan_views(plan, files, subject, views);
+  for (const OtherLook& other : files.others) {
+    PicturePlan look = plan;
+    look.settings = other.settings;
+    look.words = other.words;
+    RecordingFiles there = files;
+    there.out = other.out;
+    plan_views(look, there, subject, views);
   }
   return views;
 }
@@ -117,7 +131,7 @@ FrameRenderer::FrameRenderer(const PicturePlan& plan, const RecordingFiles& file
   if (plan_.before) rest_ = *plan_.before;
 
   for (PlannedView& planned : planned_views(plan_, files, subject)) {
-    View view{std::move(planned.camera), plan_.settings, nullptr};
+    View view{std::move(planned.camera), std::move(planned.settings), nullptr};
     if (const auto* arch = view.camera.arch())
       for (const auto& [part, opacity] : arch->hidden()) view.settings.part_opacity[part] = opacity;
     view.recorder = std::make_unique<Recorder>(planned.recorder);

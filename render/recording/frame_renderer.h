@@ -29,11 +29,19 @@ struct RecordingSubject {
   RecordingSheet identity;  // of case, motion and tissue
 };
 
+/// The same motion, drawn with other parts or opacities.
+struct OtherLook {
+  std::filesystem::path out;
+  PictureSettings settings;
+  RecordingSheet words = {};  // as PicturePlan::words
+};
+
 /// Output of the pictures.
 struct RecordingFiles {
   std::filesystem::path out;  // with several cameras: one subfolder each
   bool film = false;
   bool resume = false;
+  std::vector<OtherLook> others = {};  // drawn of the same frames
 };
 
 /// Existing content at the output of a recording, of all its cameras together.

@@ -165,6 +165,38 @@ TEST(Record, ResumeRefusesAChangedMotionAndAChangedCamera) {
   EXPECT_EQ(record(true), 2);
 }
 
+TEST(Record, AnotherLookOfTheSameMotionIsTheOneRecordedByItself) {
+  const Folder folder;
+  const std::string patient = box_case(folder);
+  const auto record = [&](const std::string& out, std::vector<std::string> more) {
+    std::vector<std::string> command = {"record",     patient,    "--motion", "opening", "--out",
+                                        folder / out, "--frames", "3",        "--size",  "160x120"};
+    command.insert(command.end(), more.begin(), more.end());
+    return condyle(command);
+  };
+  const std::string bones = "maxilla:0.5,mandible";
+  ASSERT_EQ(record("alone", {"--show", bones}).code, 0);
+  ASSERT_EQ(record("all", {}).code, 0);
+  const auto both = record("out", {"--also", folder / "other=" + bones});
+  ASSERT_EQ(both.code, 0) << both.err;
+  EXPECT_EQ(pictures(folder / "other/frames"), pictures(folder / "alone/frames"));
+  EXPECT_EQ(pictures(folder / "out/frames"), pictures(folder / "all/frames"));
+  EXPECT_NE(pictures(folder / "out/frames"), pictures(folder / "other/frames"));
+  EXPECT_EQ(read_text(folder / "other/hashes.csv"), read_text(folder / "alone/hashes.csv"));
+  EXPECT_EQ(read_trace(folder / "out/trace.csv").bits, read_trace(folder / "all/trace.csv").bits);
+
+  const auto refused = [&](const std::string& also) {
+    const auto outcome = record("refused", {"--also", also});
+    EXPECT_EQ(outcome.code, 2) << also;
+    return outcome.err;
+  };
+  for (const std::string text : {"bones", "=bones", "glass="})
+    EXPECT_NE(refused(text).find("--also " + text), std::string::npos);
+  EXPECT_NE(refused(folder / "refused=" + bones).find("has that folder"), std::string::npos);
+  EXPECT_NE(refused(folder / "x=tail").find("tail is unknown"), std::string::npos);
+  EXPECT_NE(refused(folder / "x=bones,distance").find("drawn by --show"), std::string::npos);
+}
+
 TEST(Json, GoesAloneToStandardOutput) {
   const Folder folder;
   const std::string patient = box_case(folder);
