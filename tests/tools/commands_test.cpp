@@ -193,7 +193,7 @@ TEST(Record, AnotherLookOfTheSameMotionIsTheOneRecordedByItself) {
   for (const std::string text : {"bones", "=bones", "glass="})
     EXPECT_NE(refused(text).find("--also " + text), std::string::npos);
   EXPECT_NE(refused(folder / "refused=" + bones).find("has that folder"), std::string::npos);
-  EXPECT_NE(refused(folder / "x=tail").find("tail is unknown"), std::string::npos);
+  EXPECT_NE(refused(folder / "x=tail").find("tail: unknown"), std::string::npos);
   EXPECT_NE(refused(folder / "x=bones,distance").find("drawn by --show"), std::string::npos);
 }
 
