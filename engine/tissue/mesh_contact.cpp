@@ -70,18 +70,37 @@ ContactObstacle::ContactObstacle(const TriMesh& piece, const TriMesh& uncut,
                                  const std::filesystem::path& cache, int threads)
     : field_(cached_piece_field(cache, piece, uncut, of_uncut.field_, threads)), surface_(piece) {}
 
+double ContactObstacle::gradient_length(const Vector3d& p) const {
+  constexpr double step_mm = 0.5 * spacing_mm;
+  Vector3d twice;
+  for (int k = 0; k < 3; ++k) {
+    const Vector3d step = step_mm * Vector3d::Unit(k);
+    const DistanceField::Spot before = field_.spot(p - step), after = field_.spot(p + step);
+    if (!before.known || !after.known) return 0;
+    twice[k] = after.distance_mm - before.distance_mm;
+  }
+  return twice.norm() / (2 * step_mm);
+}
+
 bool ContactObstacle::near(const Vector3d& p, double reach, Near& near) const {
+  // Between equally near surfaces interpolation rounds the edges off: there the exact distance
+  // takes over, gradually, so that tissue finds an equilibrium at an edge.
+  constexpr double rounded = 0.5, smooth = 0.7;
   const DistanceField::Spot spot = field_.spot(p);
   if (spot.known && spot.distance_mm > reach) {
     near.distance = spot.distance_mm;
     return false;
   }
   near.distance = spot.known ? -deepest_mm : field_.lower_bound(p);
+  double of_field = 0;  // fraction
+  Near field;
   if (spot.known) {
     const Vector3d gradient = field_.gradient(spot);
-    const double steep = gradient.norm();
-    if (steep > 0.7) {  // not between two equally near surfaces
-      near = {spot.distance_mm, gradient / steep};
+    if (!gradient.isZero(0))
+      of_field = std::clamp((gradient_length(p) - rounded) / (smooth - rounded), 0.0, 1.0);
+    field = {spot.distance_mm, gradient.normalized()};
+    if (of_field == 1) {
+      near = field;
       apply_patch_normal(p, near);
       return true;
     }
@@ -91,10 +110,12 @@ bool ContactObstacle::near(const Vector3d& p, double reach, Near& near) const {
   }
   const SurfacePoint found = surface_.signed_nearest(p, deepest_mm);
   if (found.triangle < 0) return false;
-  near.distance = found.distance;
+  near.distance = (1 - of_field) * found.distance + of_field * field.distance;
   if (near.distance > reach) return false;
   near.normal = std::abs(found.distance) > close_mm ? Vector3d((p - found.point) / found.distance)
                                                     : surface_.pseudonormal(found).normalized();
+  if (of_field > 0)
+    near.normal = ((1 - of_field) * near.normal + of_field * field.normal).normalized();
   apply_patch_normal(p, near);
   return true;
 }
@@ -112,9 +133,15 @@ Vector3d ContactObstacle::patch_normal(const Vector3d& p, const Vector3d& own) c
       {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}}};
   Vector3d sum = Vector3d::Zero();
   for (const Vector3d& direction : tetrahedron) {
-    const DistanceField::Spot spot = field_.spot(p + patch_mm * direction);
-    if (!spot.known) return own;
-    sum += spot.distance_mm * direction;
+    const Vector3d at = p + patch_mm * direction;
+    const DistanceField::Spot spot = field_.spot(at);
+    double distance = spot.distance_mm;
+    if (!spot.known) {
+      const SurfacePoint found = surface_.signed_nearest(at, deepest_mm);
+      if (found.triangle < 0) return own;
+      distance = found.distance;
+    }
+    sum += distance * direction;
   }
   return sum.norm() > least * 4 * patch_mm ? Vector3d(sum.normalized()) : own;
 }
@@ -256,7 +283,7 @@ void lean(const Vector3d& normal, double fraction, PointContact& contact, const 
 
 /// Rate of the gap over that of the plane, from the last search to this one.
 double steepness(const PointContact& used, const PointContact& now, const Nodes& x) {
-  constexpr double least_mm = 1e-6, most = 4;
+  constexpr double least_mm = 1e-6, most = 16;
   const double of_plane = used.spring.gap(x) - used.gap / used.steepness;
   if (std::abs(of_plane) < least_mm) return used.steepness;
   return std::clamp((now.gap - used.gap) / of_plane, 1.0, most);

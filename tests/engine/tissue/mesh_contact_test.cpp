@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <random>
+#include <utility>
 
 #include "engine/mesh/measure.h"
 #include "engine/minimize/minimize.h"
@@ -115,6 +116,44 @@ TEST(MeshContact, NormalOfAnObstacleVariesContinuouslyAlongItsSurface) {
   }
   EXPECT_GT(whole, 0.5);                   // it goes around by 0.67
   EXPECT_LT(most, 10 * step_mm / radius);  // facets meet at angles of 0.1 and more
+}
+
+/// A roof of a sharp ridge along x, turned.
+TriMesh turned_roof(const Eigen::Matrix3d& turn) {
+  TriMesh mesh;
+  for (double x : {-10.0, 10.0})
+    for (const auto& [y, z] : {std::pair{-6.0, -12.0}, {6.0, -12.0}, {0.0, 0.0}})
+      mesh.vertices.emplace_back(turn * Vector3d(x, y, z));
+  mesh.triangles = {{0, 2, 1}, {3, 4, 5}, {0, 1, 4}, {0, 4, 3},
+                    {1, 2, 5}, {1, 5, 4}, {2, 0, 3}, {2, 3, 5}};
+  return mesh;
+}
+
+// Where it jumped, contact at an edge had no equilibrium and the solution went to and fro.
+TEST(MeshContact, DistanceVariesContinuouslyAboutASharpEdge) {
+  constexpr double step_mm = 0.002;
+  std::mt19937_64 random(21);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  double most = 0;
+  int inside = 0;
+  for (int roof = 0; roof < 6; ++roof) {
+    const Eigen::Matrix3d turn = test::any_pose(random, 0).R.toRotationMatrix();
+    const ContactObstacle ridge(turned_roof(turn), wide_box(), {});
+    for (int run = 0; run < 40; ++run) {  // past the ridge, above and below it
+      const Vector3d middle(5 * uniform(random), 0, 0.8 * uniform(random));
+      const Vector3d along = Vector3d(uniform(random), 1, uniform(random)).normalized();
+      double before = 0;
+      for (int i = -500; i <= 500; ++i) {
+        ContactObstacle::Near near;
+        ASSERT_TRUE(ridge.near(turn * (middle + i * step_mm * along), 1.9, near));
+        if (i > -500) most = std::max(most, std::abs(near.distance - before));
+        inside += near.distance < 0;
+        before = near.distance;
+      }
+    }
+  }
+  EXPECT_GT(inside, 10000);
+  EXPECT_LT(most, 2 * step_mm);
 }
 
 TEST(MeshContact, ObstacleReportsTheDistanceOfABallAtAnyPose) {
