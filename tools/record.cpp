@@ -116,8 +116,7 @@ void check_early(const RecordOptions& options) {
   check_motion(options.motion);
   if (options.pictures) check_pictures(options.picture);
   const auto absolute = [](const fs::path& folder) {
-    fs::path path = fs::absolute(folder / "").lexically_normal();
-    return path;
+    return fs::absolute(folder / "").lexically_normal();
   };
   std::set<fs::path> used{absolute(options.out)};
   for (const auto& text : options.also)
@@ -129,16 +128,25 @@ void check_early(const RecordOptions& options) {
 std::vector<OtherLook> other_looks(const RecordOptions& options, const PicturePlan& plan,
                                    const Case& patient) {
   std::vector<OtherLook> looks;
-  for (const auto& text : options.also) {
-    PictureOptions picture = options.picture;
-    fs::path folder;
-    std::tie(folder, picture.show) = folder_and_parts(text);
-    PicturePlan look = parse_pictures(picture, patient);
-    if (look.map != plan.map)
-      throw InputError("--also " + text + ": maps of distance or displacement are drawn by --show");
-    looks.push_back({folder, std::move(look.settings), std::move(look.words)});
-  }
+  for (const auto& text : options.also) try {
+      PictureOptions picture = options.picture;
+      fs::path folder;
+      std::tie(folder, picture.show) = folder_and_parts(text);
+      PicturePlan look = parse_pictures(picture, patient);
+      if (look.map != plan.map)
+        throw InputError("maps of distance or displacement are drawn by --show alone");
+      looks.push_back({folder, std::move(look.settings), std::move(look.words)});
+    } catch (const InputError& error) {
+      throw InputError("--also " + text + ": " + error.what());
+    }
   return looks;
+}
+
+/// What an interruption says.
+std::string pictures_stay(const fs::path& out) {
+  return "condyle: interrupted; the finished pictures stay in " +
+         fs::absolute(out).lexically_normal().string() +
+         ", and the same command with --resume draws the others";
 }
 
 /// Left of a wipe is the patient before the operation, if there is one.
@@ -196,10 +204,7 @@ int run_record(const RecordOptions& options, const CommonOptions& common) {
                          .identity = recording_identity(scene, motion, times.all(), settings,
                                                         options.motion.respect_contact)});
   std::optional<Interruption> interruption;
-  if (options.pictures)
-    interruption.emplace("condyle: interrupted; the finished pictures stay in " +
-                         fs::absolute(options.out).lexically_normal().string() +
-                         ", and the same command with --resume draws the others");
+  if (options.pictures) interruption.emplace(pictures_stay(options.out));
   for (int i = 0; i < times.count; ++i) {
     FrameState frame = playback.at(times[i]);
     const auto done = [&](int number, const FrameState& drawn) {
