@@ -112,7 +112,7 @@ const std::map<std::string, std::set<Role>>& part_groups() {
 }
 
 SurfaceMap apply_show_list(const std::string& list, std::span<const Part> parts,
-                           PictureSettings& settings) {
+                           PictureSettings& settings, const std::string& option) {
   const auto& groups = part_groups();
   const auto known = [&] {
     std::string names = "all, contacts, distance, displacement";
@@ -135,7 +135,7 @@ SurfaceMap apply_show_list(const std::string& list, std::span<const Part> parts,
       const std::string number = item.substr(colon + 1);
       value = std::strtod(number.c_str(), &rest);
       if (number.empty() || *rest != '\0' || !(value >= 0 && value <= 1))
-        throw InputError("--show " + item + ": the opacity must be a number from 0 to 1");
+        throw InputError(option + " " + item + ": the opacity must be a number from 0 to 1");
       item.resize(colon);
     }
     bool found = item == "all" || item == "contacts";
@@ -153,7 +153,7 @@ SurfaceMap apply_show_list(const std::string& list, std::span<const Part> parts,
       if (chosen) opacity[part.name] = value;
       found |= chosen || group != groups.end();
     }
-    if (!found) throw InputError("--show " + item + ": unknown; known are " + known());
+    if (!found) throw InputError(option + " " + item + ": unknown; known are " + known());
   }
   for (const auto& part : parts)
     if (part.role == Role::face) settings.skin_opacity = opacity[part.name];

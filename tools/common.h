@@ -61,9 +61,9 @@ std::pair<int, int> parse_size(const std::string& text);
 const std::map<std::string, std::set<Role>>& part_groups();
 
 /// Fills opacities from a list such as "bones,teeth,skin:0.4"; "all" shows every part.
-/// Returns the colour map in the list, if there is one. throws: InputError for
-/// an unknown name, listing the known ones.
+/// Returns the colour map in the list, if there is one. `option`: the list's, for messages.
+/// throws: InputError for an unknown name, listing the known ones.
 SurfaceMap apply_show_list(const std::string& list, std::span<const Part> parts,
-                           PictureSettings& settings);
+                           PictureSettings& settings, const std::string& option = "--show");
 
 }  // namespace condyle

@@ -17,7 +17,8 @@ struct PictureOptions {
   std::string size = "1280x720";
   std::string camera = "three-quarter";  // several separated by commas
   std::string show = "all";
-  double distance_near_mm = 2;  // end of the map of distances
+  std::string shown_by = "--show";  // the option that gave `show`
+  double distance_near_mm = 2;      // end of the map of distances
   std::string clip = {}, clip_parts = {}, cut_away = {}, overlay = {};
   bool clip_open = false;
   std::optional<double> wipe = std::nullopt;

@@ -141,7 +141,7 @@ PicturePlan parse(const PictureOptions& options, const Case* patient) {
   PicturePlan plan;
   auto& settings = plan.settings;
   std::tie(settings.width, settings.height) = parse_size(options.size);
-  if (patient) plan.map = apply_show_list(options.show, patient->parts, settings);
+  if (patient) plan.map = apply_show_list(options.show, patient->parts, settings, options.shown_by);
   if (!options.clip.empty()) {
     settings.clip = parse_clip(options.clip, patient);
     settings.clip->capped = !options.clip_open;

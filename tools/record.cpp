@@ -128,17 +128,17 @@ void check_early(const RecordOptions& options) {
 std::vector<OtherLook> other_looks(const RecordOptions& options, const PicturePlan& plan,
                                    const Case& patient) {
   std::vector<OtherLook> looks;
-  for (const auto& text : options.also) try {
-      PictureOptions picture = options.picture;
-      fs::path folder;
-      std::tie(folder, picture.show) = folder_and_parts(text);
-      PicturePlan look = parse_pictures(picture, patient);
-      if (look.map != plan.map)
-        throw InputError("maps of distance or displacement are drawn by --show alone");
-      looks.push_back({folder, std::move(look.settings), std::move(look.words)});
-    } catch (const InputError& error) {
-      throw InputError("--also " + text + ": " + error.what());
-    }
+  for (const auto& text : options.also) {
+    PictureOptions picture = options.picture;
+    picture.shown_by = "--also";
+    fs::path folder;
+    std::tie(folder, picture.show) = folder_and_parts(text);
+    PicturePlan look = parse_pictures(picture, patient);
+    if (look.map != plan.map)
+      throw InputError("--also " + text +
+                       ": must ask for the same map as --show: distance, displacement or none");
+    looks.push_back({folder, std::move(look.settings), std::move(look.words)});
+  }
   return looks;
 }
 
@@ -172,10 +172,15 @@ int run_record(const RecordOptions& options, const CommonOptions& common) {
   check_motion(options.motion, patient);
   std::optional<PicturePlan> plan;
   const bool is_uncut = options.motion.plan.empty();  // else segments may be named
-  if (options.pictures && is_uncut) plan = parse_pictures(options.picture, patient);
+  std::vector<OtherLook> looks;
+  const auto plan_pictures = [&](const Case& of) {
+    plan = parse_pictures(options.picture, of);
+    looks = other_looks(options, *plan, of);
+  };
+  if (options.pictures && is_uncut) plan_pictures(patient);
   const Scene scene = scene_of(options.motion, patient, settings, bar.callback());
   if (options.pictures && !is_uncut) {
-    plan = parse_pictures(options.picture, scene.patient);
+    plan_pictures(scene.patient);
     if (plan->wipe) add_state_before(patient, scene, options.motion, *plan);
   }
   print_notes(scene, options.motion.patient, common, bar);
@@ -195,7 +200,7 @@ int run_record(const RecordOptions& options, const CommonOptions& common) {
         RecordingFiles{.out = options.out,
                        .film = options.film,
                        .resume = options.resume,
-                       .others = other_looks(options, *plan, scene.patient)},
+                       .others = std::move(looks)},
         RecordingSubject{.scene = scene,
                          .motion = motion,
                          .settings = settings,
@@ -291,9 +296,9 @@ void add_record(Commands& commands) {
   command.add_flag("--resume", options->resume, "Complete an interrupted recording");
   command
       .add_option("--also", options->also,
-                  "Draw the same motion with other parts, too, into another folder, e.g. "
-                  "out/glass=bones,teeth,skin:0.3; repeatable. It is simulated once; trace and "
-                  "report are in --out")
+                  "Also draw the motion with other parts into another folder, e.g. "
+                  "out/glass=bones,teeth,skin:0.3; repeatable. The motion is simulated once; trace "
+                  "and report are written to --out")
       ->type_name("FOLDER=PARTS")
       ->allow_extra_args(false);
   add_pictures(command, options->picture);

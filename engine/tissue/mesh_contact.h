@@ -43,8 +43,8 @@ class ContactObstacle {
   std::size_t bytes() const { return field_.memory_bytes() + surface_.bytes(); }
 
  private:
-  /// Length of the field's gradient about p, continuous in p: 1 before a smooth surface, less
-  /// between two; 0 where the field is unknown.
+  /// Length of the field's gradient about p, by central differences: 1 before a smooth surface,
+  /// less between two. Continuous where the field is known around p, else 0.
   double gradient_length(const Eigen::Vector3d& p) const;
   /// Replaces the normal at p by the patch average where contact forces can occur.
   void apply_patch_normal(const Eigen::Vector3d& p, Near& near) const;

@@ -146,6 +146,10 @@ ThroatSection::ThroatSection(std::span<const Part> parts) {
   });
   if (tongue == parts.end()) return;
   for (const auto& v : tongue->mesh.vertices) tongue_.extend(v.cast<float>());
+  if (tongue_.sizes().minCoeff() <= 0) {
+    tongue_.setEmpty();
+    return;
+  }
   const Vector3f scale = tongue_.sizes().cwiseQuotient(usual_tongue.sizes());
   const auto place = [&](const Vector2f& p) -> Vector2f {
     return tongue_.center().tail<2>() +

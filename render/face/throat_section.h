@@ -21,9 +21,9 @@ struct SectionOutline {
 
 /// Schematic soft parts inside a face that has a tongue: airway from the choanae to the trachea,
 /// soft palate, epiglottis, root of the tongue, hyoid. Placed and scaled by the box of the tongue.
-/// As the jaw opens, the root bends with the tongue, and the airway gives way backward, as far as
-/// it must, before mandible, tongue and hyoid: it keeps about seven tenths of its depth. (A neck
-/// would extend to make room.) For pictures alone.
+/// As the jaw opens, the root bends with the tongue, and the airway yields backward as far as
+/// needed for mandible, tongue and hyoid: it keeps about seven tenths of its depth. (A neck would
+/// extend to make room.) For pictures alone.
 /// source: proportions of a median section, Gray's Anatomy, 41st ed.
 class ThroatSection {
  public:

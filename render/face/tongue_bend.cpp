@@ -12,6 +12,7 @@ using Eigen::Vector3f;
 // Of the box of the tongue: from its tip backward, from its underside downward.
 constexpr float hyoid_back = 0.79f, hyoid_down = 0.73f;
 constexpr float bends_from = 0.4f, bends_over = 0.55f, root_per_down = 0.7f;
+constexpr float flat_mm = 1e-3f;                  // extent of a tongue that has none
 constexpr double follows = 0.5, descends = 0.25;  // over its way backward
 
 Eigen::Affine3f affine(const Pose& pose) {
@@ -35,7 +36,7 @@ TongueBend::TongueBend(const Eigen::AlignedBox3f& tongue, const Pose& X_CM)
 }
 
 Vector3f TongueBend::operator()(const Vector3f& rest) const {
-  const Vector3f size = tongue_.sizes();
+  const Vector3f size = tongue_.sizes().cwiseMax(flat_mm);
   const float back = (rest.y() - tongue_.min().y()) / size.y();
   const float down = std::max(0.f, (tongue_.min().z() - rest.z()) / size.z());
   const auto root =

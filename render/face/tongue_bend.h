@@ -7,9 +7,9 @@
 namespace condyle {
 
 /// Shape of the tongue while the jaw moves, for pictures alone: its tip stays with the mandible,
-/// its root goes with the hyoid, which follows the mandible half way and descends a little.
-/// So the tongue lies further forward in the arch the wider the jaw opens. The numbers were chosen
-/// for room between mandible and hyoid.
+/// its root goes with the hyoid, which moves half as far as the mandible and descends a little.
+/// So the tongue lies further forward in the arch the wider the jaw opens. The constants were
+/// chosen to leave room between mandible and hyoid.
 class TongueBend {
  public:
   /// tongue: its bounds at rest, mm, in the frame of the mandible. X_CM: pose of the mandible.

@@ -48,7 +48,7 @@ std::pair<Eigen::Vector3d, Eigen::Vector3d> view_box(const Case& patient, const 
   Box box = drawn_box(patient, motion, plan.settings);
   // A window may show overlays only.
   if (box.empty() && plan.window) box = drawn_box(patient, motion, {});
-  if (box.empty()) throw InputError("--show: nothing is left to draw");
+  if (box.empty()) throw InputError("nothing is left to draw: --show or --also hides every part");
   return {box.low, box.high};
 }
 

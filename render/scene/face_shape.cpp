@@ -69,8 +69,10 @@ void FaceShape::send(std::span<const Part> parts, std::span<Drawable> drawables,
   const TriMesh& rest = face->part->mesh;
   Drawable::FaceLook drawn{.folded = look.folds};
   if (look.life) {
-    if (!living_)
-      living_.emplace(parts, float_positions(rest), face->triangles(), look.life->nose_tip);
+    if (!living_ || nose_tip_ != look.life->nose_tip) {
+      nose_tip_ = look.life->nose_tip;
+      living_.emplace(parts, float_positions(rest), face->triangles(), nose_tip_);
+    }
     drawn.alive = [&](std::span<Eigen::Vector3f> places) {
       living_->move_face(*look.life, look.signs, places);
     };

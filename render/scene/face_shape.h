@@ -45,9 +45,10 @@ class FaceShape {
   };
   void send_eyes(std::span<Drawable> drawables, const LifeSigns* signs);
 
-  std::vector<Eigen::Vector3f> places_;  // empty: at rest
-  std::optional<Look> sent_;             // none: the places were not sent yet
-  std::optional<LivingFace> living_;     // from the first picture with life on
+  std::vector<Eigen::Vector3f> places_;      // empty: at rest
+  std::optional<Look> sent_;                 // none: the places were not sent yet
+  std::optional<LivingFace> living_;         // from the first picture with life on
+  std::optional<Eigen::Vector3d> nose_tip_;  // that it was made for
   bool eyes_moved_ = false;
   std::vector<Eigen::Vector3f> normals_;  // reused between frames
 };

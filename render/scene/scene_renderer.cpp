@@ -265,6 +265,8 @@ std::optional<DrawItem> SceneRenderer::State::mouth_cavity(std::span<const DrawI
 std::span<const SectionSolid> SceneRenderer::State::section_solids(const PictureView& view) {
   if (!view.sectioned) return {};
   if (!section_anatomy) section_anatomy.emplace(parts);
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    if (parts[i].role == Role::tongue) return section_anatomy->place(poses[i]);
   return section_anatomy->place(X_CM);
 }
 

@@ -98,6 +98,7 @@ PairContact query_pair(const ColliderPair& pair, const Pose& X_CA, const Pose& X
   PairContact out = about(pair);
   const double balls_apart = (X_CB * b.solid.center() - X_CA * a.solid.center()).norm() -
                              a.solid.radius() - b.solid.radius();
+  bool enclosed = false;
   std::vector<MeshContact> early = early_crossings(pair, X_CA, X_CB, start, options);
   if (!early.empty()) {
     const MeshContact& first = early.front();
@@ -110,9 +111,9 @@ PairContact query_pair(const ColliderPair& pair, const Pose& X_CA, const Pose& X
     const auto found = reach_mm < nowhere_mm
                            ? distance_within(reach_mm, a.surface, X_CA, b.surface, X_CB, start)
                            : distance(a.surface, X_CA, b.surface, X_CB, start);
-    if (!found && (options.need_distance || balls_apart > 0 ||
-                   !one_encloses_other(a.solid, X_CA, b.solid, X_CB)))
-      return far_apart(pair, std::max(reach_mm, balls_apart));
+    enclosed = !(found && found->distance_mm == 0) && balls_apart <= 0 &&
+               one_encloses_other(a.solid, X_CA, b.solid, X_CB);
+    if (!found && !enclosed) return far_apart(pair, std::max(reach_mm, balls_apart));
     MeshDistance gap;
     gap.distance_mm = reach_mm;
     if (found) gap = *found;
@@ -123,8 +124,7 @@ PairContact query_pair(const ColliderPair& pair, const Pose& X_CA, const Pose& X
     out.triangle_b = gap.triangles.b;
   }
   const bool crossing = out.distance_mm == 0;
-  if (!crossing && (balls_apart > 0 || !one_encloses_other(a.solid, X_CA, b.solid, X_CB)))
-    return out;
+  if (!crossing && !enclosed) return out;
 
   out.touching = true;
   out.distance_mm = 0;

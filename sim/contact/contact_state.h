@@ -11,7 +11,7 @@ namespace condyle {
 
 class Slider;
 
-/// Distances to measure: all, or none but whether surfaces touch.
+/// What to measure of pairs that do not touch: their distance, or nothing.
 enum class Distances { all, of_touching };
 
 /// Data of a contact model: colliders, pairs, and their state at rest.

@@ -7,7 +7,6 @@
 #include <functional>
 #include <vector>
 
-#include "engine/core/user_cache.h"
 #include "sim/motion/condylar_kinematics.h"
 
 namespace condyle {
@@ -81,7 +80,7 @@ double teeth_apart_at_rest_mm(const Case& patient) {
   const auto teeth = occluding_surfaces(patient, 0.5 * (*left + *right), *incisor);
   if (teeth.upper.empty() || teeth.lower.empty()) return 0;
   TrianglePair start;
-  const auto cache = user_cache_folder();
+  const auto cache = box_tree_folder(patient);
   return distance(CollisionMesh(teeth.upper, cache), {}, CollisionMesh(teeth.lower, cache), {},
                   start)
       .distance_mm;
@@ -100,7 +99,7 @@ BiteGuide::BiteGuide(const Case& patient, const JawJoints& joints,
     notes_ = "without teeth, an incisal table guides protrusion and laterotrusion";
     return;
   }
-  const auto cache = user_cache_folder();
+  const auto cache = box_tree_folder(patient);
   lower_.emplace(lower, cache);
   upper_.emplace(upper, cache);
   for (const auto& v : lower.vertices)

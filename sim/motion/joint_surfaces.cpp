@@ -44,6 +44,12 @@ std::uint64_t hash_of(const TriMesh& mesh, std::uint64_t h) {
 
 }  // namespace
 
+std::filesystem::path box_tree_folder(const Case& patient) {
+  const bool divided = std::any_of(patient.parts.begin(), patient.parts.end(),
+                                   [](const Part& part) { return is_piece(part.role); });
+  return divided ? std::filesystem::path() : user_cache_folder();
+}
+
 std::optional<JointSurfaces> JointSurfaces::find(const Case& patient) {
   JointSurfaces joint;
   for (const auto& [name, body] : {std::pair{"left_condyle", patient.jaw.left_condyle},
@@ -57,7 +63,7 @@ std::optional<JointSurfaces> JointSurfaces::find(const Case& patient) {
       if (part.body == cranium_body) append_near(part.mesh, *center, fossa_radius_mm, fossa);
     }
     if (condyle.empty() || fossa.empty()) return std::nullopt;
-    const auto cache = user_cache_folder();
+    const auto cache = box_tree_folder(patient);
     Side side{CollisionMesh(condyle, cache), CollisionMesh(fossa, cache), 0, 0, {}};
     side.hash = hash_of(fossa, hash_of(condyle, hash_start));
     const MeshDistance rest = distance(side.fossa, {}, side.condyle, {});

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -10,6 +11,10 @@
 #include "sim/case/case.h"
 
 namespace condyle {
+
+/// The folder for box trees of surfaces of a patient; none where bones are divided, because
+/// segments change with each edit of their plan.
+std::filesystem::path box_tree_folder(const Case& patient);
 
 enum class JawSide { left, right };
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <future>
 #include <memory>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -160,27 +161,35 @@ std::shared_ptr<TissueMesh> make_mesh(Build& build, TissueSummary& summary) {
   constexpr double flattened_mm = 6;  // around such places, and as much more each time
   constexpr int most_times = 3;
   SkinRegion region = build.region;
+  std::optional<Vector3d> folded;  // on the skin itself
+  const auto refused = [&] {
+    return InputError(
+        fmt::format("face: the skin folds near ({:.1f}, {:.1f}, {:.1f}) mm so that tissue below it "
+                    "would turn inside out; smooth the face there",
+                    folded->x(), folded->y(), folded->z()));
+  };
   for (int times = 0;; ++times) {
-    build.skin = make_coarse_skin(region, build.settings.surface_nodes);
-    const TriMesh sheet = build.skin.mesh;
-    std::vector<std::string> notes;
-    std::shared_ptr<TissueMesh> mesh = make_layers(build, notes);
-    const std::vector<int> inverted = inverted_columns(*mesh);
-    if (inverted.empty()) {
-      summary.notes.insert(summary.notes.end(), notes.begin(), notes.end());
-      if (times > 0)
-        summary.notes.push_back("the simulated sheet is flat where the skin folds too sharply");
-      return mesh;
+    try {
+      std::vector<std::string> notes;
+      build.skin = make_coarse_skin(region, build.settings.surface_nodes);
+      const TriMesh sheet = build.skin.mesh;
+      std::shared_ptr<TissueMesh> mesh = make_layers(build, notes);
+      const std::vector<int> inverted = inverted_columns(*mesh);
+      if (inverted.empty()) {
+        summary.notes.insert(summary.notes.end(), notes.begin(), notes.end());
+        if (times > 0)
+          summary.notes.push_back("the simulated sheet is flat where the skin folds too sharply");
+        return mesh;
+      }
+      if (!folded) folded = sheet.vertices[inverted.front()];
+      if (times == most_times) throw refused();
+      std::vector<Vector3d> places;
+      for (int column : inverted) places.push_back(sheet.vertices[column]);
+      region.mesh = flattened_near(region.mesh, places, (times + 1) * flattened_mm);
+    } catch (const InputError&) {
+      if (!folded) throw;
+      throw refused();
     }
-    const Vector3d& at = sheet.vertices[inverted.front()];
-    if (times == most_times)
-      throw InputError(
-          fmt::format("face: the skin folds near ({:.1f}, {:.1f}, {:.1f}) mm so that tissue below "
-                      "it would turn inside out; smooth the face there",
-                      at.x(), at.y(), at.z()));
-    std::vector<Vector3d> places;
-    for (int column : inverted) places.push_back(sheet.vertices[column]);
-    region.mesh = flattened_near(region.mesh, places, (times + 1) * flattened_mm);
   }
 }
 

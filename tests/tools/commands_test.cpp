@@ -193,8 +193,10 @@ TEST(Record, AnotherLookOfTheSameMotionIsTheOneRecordedByItself) {
   for (const std::string text : {"bones", "=bones", "glass="})
     EXPECT_NE(refused(text).find("--also " + text), std::string::npos);
   EXPECT_NE(refused(folder / "refused=" + bones).find("has that folder"), std::string::npos);
-  EXPECT_NE(refused(folder / "x=tail").find("tail: unknown"), std::string::npos);
-  EXPECT_NE(refused(folder / "x=bones,distance").find("drawn by --show"), std::string::npos);
+  EXPECT_NE(refused(folder / "x=tail").find("--also tail: unknown"), std::string::npos);
+  EXPECT_NE(refused(folder / "x=bones:7").find("--also bones:7: the opacity"), std::string::npos);
+  EXPECT_NE(refused(folder / "x=bones:0").find("nothing is left"), std::string::npos);
+  EXPECT_NE(refused(folder / "x=bones,distance").find("the same map as --show"), std::string::npos);
 }
 
 TEST(Json, GoesAloneToStandardOutput) {

@@ -61,11 +61,11 @@ TEST(ContactModel, MixedUpJawsStopWhereTheyMeetInsteadOfSearching) {
 }
 
 TEST(ContactModel, TouchingPairsAreFoundWithoutDistancesAsWithThem) {
-  // Balls in a box with a wall: apart, crossing, and entirely inside.
-  TriMesh room = test::box({-30, -30, 0}, {30, 30, 30});
+  // A ball and a box: apart, crossing, and entirely inside, up to 34 mm below the surface.
+  const TriMesh room = test::box({-40, -40, 0}, {40, 40, 80});
   const ContactModel model(two_bones(room, test::sphere(4, 6, {0, 0, -12})));
   std::mt19937 random(7);
-  std::uniform_real_distribution<double> aside(-45, 45), up(-10, 60);
+  std::uniform_real_distribution<double> aside(-55, 55), up(-10, 110);
   int apart = 0, crossing = 0, inside = 0;
   for (int i = 0; i < 200; ++i) {
     const Pose X = shift(aside(random), aside(random), up(random));
