@@ -142,6 +142,14 @@ std::vector<OtherLook> other_looks(const RecordOptions& options, const PicturePl
   return looks;
 }
 
+/// The pictures of --show, and those of --also. throws: InputError.
+std::pair<PicturePlan, std::vector<OtherLook>> planned_pictures(const RecordOptions& options,
+                                                                const Case& patient) {
+  PicturePlan plan = parse_pictures(options.picture, patient);
+  std::vector<OtherLook> looks = other_looks(options, plan, patient);
+  return {std::move(plan), std::move(looks)};
+}
+
 /// What an interruption says.
 std::string pictures_stay(const fs::path& out) {
   return "condyle: interrupted; the finished pictures stay in " +
@@ -173,14 +181,10 @@ int run_record(const RecordOptions& options, const CommonOptions& common) {
   std::optional<PicturePlan> plan;
   const bool is_uncut = options.motion.plan.empty();  // else segments may be named
   std::vector<OtherLook> looks;
-  const auto plan_pictures = [&](const Case& of) {
-    plan = parse_pictures(options.picture, of);
-    looks = other_looks(options, *plan, of);
-  };
-  if (options.pictures && is_uncut) plan_pictures(patient);
+  if (options.pictures && is_uncut) std::tie(plan, looks) = planned_pictures(options, patient);
   const Scene scene = scene_of(options.motion, patient, settings, bar.callback());
   if (options.pictures && !is_uncut) {
-    plan_pictures(scene.patient);
+    std::tie(plan, looks) = planned_pictures(options, scene.patient);
     if (plan->wipe) add_state_before(patient, scene, options.motion, *plan);
   }
   print_notes(scene, options.motion.patient, common, bar);
