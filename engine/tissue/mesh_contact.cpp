@@ -133,15 +133,9 @@ Vector3d ContactObstacle::patch_normal(const Vector3d& p, const Vector3d& own) c
       {{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}}};
   Vector3d sum = Vector3d::Zero();
   for (const Vector3d& direction : tetrahedron) {
-    const Vector3d at = p + patch_mm * direction;
-    const DistanceField::Spot spot = field_.spot(at);
-    double distance = spot.distance_mm;
-    if (!spot.known) {
-      const SurfacePoint found = surface_.signed_nearest(at, deepest_mm);
-      if (found.triangle < 0) return own;
-      distance = found.distance;
-    }
-    sum += distance * direction;
+    const DistanceField::Spot spot = field_.spot(p + patch_mm * direction);
+    if (!spot.known) return own;
+    sum += spot.distance_mm * direction;
   }
   return sum.norm() > least * 4 * patch_mm ? Vector3d(sum.normalized()) : own;
 }
