@@ -87,6 +87,10 @@ class ConjugateGradients {
         result_.status = Status::stalled;
       return false;
     }
+    if (!settings_.check_last && result_.iterations + 1 >= settings_.max_iterations) {
+      g_.swap(g_new_);
+      return true;
+    }
     if (const Preconditioner* other = renewed()) {
       preconditioner_ = other;
       g_.swap(g_new_);

@@ -22,6 +22,9 @@ struct MinimizeSettings {
   /// objective is stiffer than the preconditioner, the estimate is reduced accordingly, by half at
   /// most.
   bool fresh = false;
+  /// Whether the last iteration that is allowed ends with a check of convergence, which takes one
+  /// more solve with the preconditioner. Without it the status is then `budget_spent`.
+  bool check_last = true;
   /// Called after each iteration with the point reached and the result so far, while it is still
   /// open whether more iterations follow. Returns another preconditioner for them, or null.
   std::function<const Preconditioner*(const Points& x, const MinimizeResult& done)> renew = {};

@@ -15,7 +15,7 @@ namespace {
 constexpr std::chrono::milliseconds picture_interval(33), sparing_interval(50);
 constexpr double sparing_step_s = 1.0 / 90;
 constexpr double step_s = 1.0 / 60;
-constexpr int step_iterations = 3;
+constexpr int step_iterations = 5;
 /// Time without a new request after which tissue settles.
 constexpr std::chrono::milliseconds calm(60);
 

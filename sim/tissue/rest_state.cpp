@@ -45,10 +45,7 @@ void measure_rest(TissueModel& model, int threads) {
     summary.notes.push_back("the unmoved tissue moves by " + std::to_string(summary.rest_move_mm) +
                             " mm: skin pretension and weight could not be balanced everywhere");
   summary.lip_points_left_out = model.contact->lip_points_left_out;
-  summary.rest_overlap_mm =
-      measure_contact(*model.contact, ContactLists(contact_lists(*model.contact)), {}, mesh.rest,
-                      mesh.rest)
-          .rest_overlap_mm;
+  summary.rest_overlap_mm = overlap_at_rest(*model.contact);
   constexpr double plausible_mm = 4;  // real faces in place: up to 2.8
   if (summary.rest_overlap_mm > plausible_mm)
     summary.notes.push_back(fmt::format(

@@ -114,6 +114,7 @@ class FrameSolve {
     const int left = budget_.max_iterations - state_.iterations;
     settings.max_iterations = std::clamp(
         std::min(iterations_per_contact, refactor_after_ - since_factor_), 1, std::max(left, 1));
+    settings.check_last = settings.max_iterations < left;
     const MinimizeResult result = minimize(energy_, factor_.now(), settings, state_.nodes);
     state_.iterations += result.iterations;
     state_.evaluations += result.evaluations;

@@ -416,19 +416,22 @@ ContactLists find_tissue_contacts(const TissueContact& contact, std::span<const 
   return lists;
 }
 
+double overlap_at_rest(const TissueContact& contact) {
+  double deepest = 0;
+  for (const auto& obstacle : contact.obstacles)
+    for (std::size_t i = 0; i < obstacle.shift.size(); ++i)
+      deepest = std::max(deepest, obstacle.shift[i].norm() + obstacle.allowance[i]);
+  for (const auto* lip : {&contact.upper, &contact.lower})
+    for (double depth : lip->allowance) deepest = std::max(deepest, depth);
+  return deepest;
+}
+
 ContactMeasure measure_contact(const TissueContact& contact, const ContactLists& lists,
                                std::span<const Pose> X_CB, const Nodes& rest, const Nodes& x) {
   ContactMeasure measure;
   for (const auto& touches : lists)
     for (const auto& touch : touches)
       measure.penetration_mm = std::max(measure.penetration_mm, -touch.gap);
-  for (const auto& obstacle : contact.obstacles)
-    for (std::size_t i = 0; i < obstacle.shift.size(); ++i)
-      measure.rest_overlap_mm =
-          std::max(measure.rest_overlap_mm, obstacle.shift[i].norm() + obstacle.allowance[i]);
-  for (const auto* lip : {&contact.upper, &contact.lower})
-    for (double depth : lip->allowance)
-      measure.rest_overlap_mm = std::max(measure.rest_overlap_mm, depth);
   for (std::size_t o = 0; o < contact.obstacles.size(); ++o) {
     const Obstacle& obstacle = contact.obstacles[o];
     const Pose X_CO = pose_in(X_CB, obstacle.body);

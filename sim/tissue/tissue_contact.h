@@ -129,9 +129,11 @@ ContactLists find_tissue_contacts(const TissueContact& contact, std::span<const 
 struct ContactMeasure {
   double penetration_mm = 0;  // deepest point in bone, teeth or skin, beyond rest
   double slip_mm = 0;  // largest displacement of a point along the bone that it touched at rest
-  double rest_overlap_mm = 0;  // deepest overlap allowed at rest
 };
 ContactMeasure measure_contact(const TissueContact& contact, const ContactLists& lists,
                                std::span<const Pose> X_CB, const Nodes& rest, const Nodes& x);
+
+/// Deepest overlap that is allowed because it exists at rest, mm.
+double overlap_at_rest(const TissueContact& contact);
 
 }  // namespace condyle

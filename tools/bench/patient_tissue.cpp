@@ -1,4 +1,5 @@
-// Warm frames of a patient's tissue of several sizes, beside synthetic sets of equal size.
+// Warm frames of a patient's tissue of several sizes, as the window shows and `record` records
+// them, beside synthetic sets of equal size.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,6 +14,7 @@
 #include "sim/motion/motion.h"
 #include "sim/muscles/default_face_muscles.h"
 #include "sim/muscles/expression_names.h"
+#include "sim/simulator/live.h"
 #include "sim/tissue/lips.h"
 #include "sim/tissue/tissue.h"
 #include "tools/bench/baseline/tissue_target.h"
@@ -86,9 +88,16 @@ FacePull pull_of_face(const Case& patient) {
   return pull;
 }
 
+/// How far each frame is solved: to its end, as `record` does, or by the window's budget.
+struct FrameRow {
+  const char* name;
+  TissueBudget budget;
+};
+
 /// `pull`: held along the opening; raised from rest before.
 Json patient_frames(const Case& patient, const TissueModel& tissue, const std::vector<Pose>& poses,
-                    int threads, const FacePull& pull = {}) {
+                    const FrameRow& how, const FacePull& pull = {}) {
+  const int threads = how.budget.threads;
   std::vector<double> wall, cpu, iterations, errors;
   FaceVertices rest, is, should;
   TissueState state = rest_tissue(tissue);
@@ -98,14 +107,14 @@ Json patient_frames(const Case& patient, const TissueModel& tissue, const std::v
   for (int i = 1; i <= raising && !pull.excitation.empty(); ++i) {
     std::vector<double> part = pull.excitation;
     for (double& of_muscle : part) of_muscle *= static_cast<double>(i) / raising;
-    state = solve_tissue(tissue, state, BodyPoses().X_CB, {.threads = threads}, warm, part);
+    state = solve_tissue(tissue, state, BodyPoses().X_CB, how.budget, warm, part);
   }
   int not_converged = 0;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     BodyPoses at;
     at[patient.jaw.lower_arch] = poses[i];
     const Stopwatch watch;
-    state = solve_tissue(tissue, state, at.X_CB, {.threads = threads}, warm, pull.excitation);
+    state = solve_tissue(tissue, state, at.X_CB, how.budget, warm, pull.excitation);
     wall.push_back(watch.wall_ms());
     cpu.push_back(watch.cpu_ms());
     iterations.push_back(state.iterations);
@@ -121,8 +130,7 @@ Json patient_frames(const Case& patient, const TissueModel& tissue, const std::v
     throw InputError(patient.name + ": no vertex of the face moves by more than 1 mm");
   const TissueSummary made = summary(tissue);
   const double error_mm = quantiles(errors).p95;
-  const char* name = pull.excitation.empty() ? "patient.tissue" : "patient.muscles";
-  Json row = timing_json({name, made.nodes, threads, "condyle"}, quantiles(wall),
+  Json row = timing_json({how.name, made.nodes, threads, "condyle"}, quantiles(wall),
                          quantiles(cpu).median, error_mm);
   row["patient"] = patient.name;
   row["iterations"] = quantiles(iterations).median;
@@ -147,7 +155,7 @@ void print_frames(const Json& row) {
                ? "-"
                : fmt::format("{:.2f}", row[name].get<double>());
   };
-  fmt::print(stderr, "  {:<16}{:>8}{:>10}{:>10}{:>10}{:>8}{:>8}{:>12.1e}\n",
+  fmt::print(stderr, "  {:<26}{:>8}{:>10}{:>10}{:>10}{:>8}{:>8}{:>12.1e}\n",
              row["name"].get<std::string>(), row["nodes"].get<int>(), ms("median"), ms("p95"),
              ms("cpu_median"), row["iterations"].get<double>(), ms("goal"),
              row["error_mm"].get<double>());
@@ -166,7 +174,7 @@ int run_bench_patient(const BenchOptions& options, const CommonOptions& common) 
   part_lips(patient);
   bar.clear();
   if (!common.quiet)
-    fmt::print(stderr, "ms  {:<14}{:>8}{:>10}{:>10}{:>10}{:>8}{:>8}{:>12}\n", "", "nodes", "median",
+    fmt::print(stderr, "ms  {:<24}{:>8}{:>10}{:>10}{:>10}{:>8}{:>8}{:>12}\n", "", "nodes", "median",
                "p95", "processor", "its", "goal", "error mm");
   Json results = Json::array();
   const auto add = [&](Json row) {
@@ -180,13 +188,19 @@ int run_bench_patient(const BenchOptions& options, const CommonOptions& common) 
     const FacePull pull = pull_of_face(patient);
     settings.face_muscles = pull.muscles;
     const auto tissue = build_tissue(patient, settings);
-    add(patient_frames(patient, *tissue, poses, common.threads));
-    if (pull.lines() > 0) {
-      const double relaxed = results.back()["cpu_median"].get<double>();
-      Json row = patient_frames(patient, *tissue, poses, common.threads, pull);
-      row["over_relaxed"] = row["cpu_median"].get<double>() / relaxed;
+    const TissueBudget recorded{.threads = common.threads};
+    TissueBudget shown = live_settings({}).tissue_budget;
+    shown.threads = common.threads;
+    const auto both = [&](const FrameRow& relaxed, const char* pulled) {
+      add(patient_frames(patient, *tissue, poses, relaxed));
+      if (pull.lines() == 0) return;
+      const double alone = results.back()["cpu_median"].get<double>();
+      Json row = patient_frames(patient, *tissue, poses, {pulled, relaxed.budget}, pull);
+      row["over_relaxed"] = row["cpu_median"].get<double>() / alone;
       add(std::move(row));
-    }
+    };
+    both({"patient.tissue", shown}, "patient.muscles");
+    both({"patient.recorded", recorded}, "patient.recorded_muscles");
     SyntheticSize size = size_of_nodes(summary(*tissue).nodes);
     size.rim_moves = true;
     add(warm_frames(make_synthetic_set(size), common.threads, "patient.set"));

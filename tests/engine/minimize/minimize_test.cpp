@@ -67,7 +67,7 @@ class Chain final : public Objective {
   std::size_t max_memory = 0;
 };
 
-class Unit final : public Preconditioner {
+class Unit : public Preconditioner {
  public:
   explicit Unit(double stiffness = 1) : stiffness_(stiffness) {}
   void solve(const Points& g, Points& z) const override {
@@ -251,6 +251,34 @@ TEST(Minimize, APreconditionerIsRenewedDuringTheSolve) {
   for (std::size_t i = 0; i < x.size(); ++i) EXPECT_LT((x[i] - expected[i]).norm(), 1e-4);
   ASSERT_EQ(asked.size(), static_cast<std::size_t>(result.iterations));
   for (std::size_t i = 0; i < asked.size(); ++i) EXPECT_EQ(asked[i], static_cast<int>(i) + 1);
+}
+
+/// Counts its solves.
+class Counting final : public Unit {
+ public:
+  void solve(const Points& g, Points& z) const override {
+    ++solves;
+    Unit::solve(g, z);
+  }
+  mutable int solves = 0;
+};
+
+TEST(Minimize, WithoutTheLastCheckASolveIsSavedAndTheResultIsTheSame) {
+  Chain chain;
+  MinimizeSettings settings;
+  settings.max_iterations = 4;
+  const Counting with, without;
+  Points a = straight_chain(12), b = a;
+  const auto checked = minimize(chain, with, settings, a);
+  settings.check_last = false;
+  const auto unchecked = minimize(chain, without, settings, b);
+  EXPECT_EQ(with.solves, without.solves + 1);
+  EXPECT_EQ(checked.iterations, 4);
+  EXPECT_EQ(unchecked.iterations, 4);
+  EXPECT_EQ(unchecked.status, MinimizeResult::Status::budget_spent);
+  EXPECT_EQ(a, b);
+  EXPECT_EQ(checked.energy, unchecked.energy);
+  EXPECT_EQ(checked.residual, unchecked.residual);
 }
 
 TEST(Minimize, AFailedRenewalEndsWithTheBestPointReached) {
