@@ -75,13 +75,17 @@ void LivingFace::find_nostrils(std::span<const Vector3f> rest, const Vector3f& t
     }
 }
 
-void LivingFace::move_face(const Life& life, const LifeSigns& signs,
-                           std::span<Vector3f> places) const {
+void LivingFace::move_lids(const LifeSigns& signs, std::span<Vector3f> places) const {
   for (std::size_t i = 0; i < lids_.size(); ++i) {
     const auto [part, eyeball] = lid_eyes_[i];
     lids_[i].move(lids_[i].lowered(signs.closure, signs.gaze_up),
                   eyes_[part]->gaze_of(eyeball, signs), places);
   }
+}
+
+std::vector<SkinFolds::Shade> LivingFace::move_face(const Life& life, const LifeSigns& signs,
+                                                    std::span<Vector3f> places) const {
+  move_lids(signs, places);
   const auto breath = static_cast<float>(signs.breath);
   for (const Member& member : neck_) {
     Vector3f& p = places[static_cast<std::size_t>(member.vertex)];
@@ -90,6 +94,9 @@ void LivingFace::move_face(const Life& life, const LifeSigns& signs,
   }
   for (const Member& member : nostrils_)
     places[static_cast<std::size_t>(member.vertex)] += breath * member.breathes;
+  std::vector<SkinFolds::Shade> shades;
+  for (const UpperLid& lid : lids_) lid.shade(lid.lowered(signs.closure, signs.gaze_up), shades);
+  return shades;
 }
 
 void LivingFace::move_eyes(std::size_t part, const LifeSigns& signs, std::span<Vector3f> places,

@@ -22,8 +22,11 @@ class LivingFace {
              std::span<const Eigen::Vector3i> triangles,
              const std::optional<Eigen::Vector3d>& nose_tip);
 
-  /// Moves the present vertices of the drawn face.
-  void move_face(const Life& life, const LifeSigns& signs, std::span<Eigen::Vector3f> places) const;
+  /// Moves the present vertices of the drawn face. Returns the shade of the lids' creases.
+  std::vector<SkinFolds::Shade> move_face(const Life& life, const LifeSigns& signs,
+                                          std::span<Eigen::Vector3f> places) const;
+  /// Moves the vertices of the upper lids alone.
+  void move_lids(const LifeSigns& signs, std::span<Eigen::Vector3f> places) const;
   /// Whether move_eyes moves any vertex of the part with this number.
   bool has_eyes(std::size_t part) const { return part < eyes_.size() && eyes_[part].has_value(); }
   /// Moves vertices and normals of a part, given at rest.

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/mesh/tri_mesh.h"
+#include "render/face/skin_folds.h"
 
 namespace condyle {
 
@@ -42,6 +43,8 @@ class UpperLid {
   /// Moves the lid's vertices by a fraction of the way to the lower lid, from where the face's
   /// expression has both lids; none enters the eyeball. gaze: unit.
   void move(double lowered, const Eigen::Vector3f& gaze, std::span<Eigen::Vector3f> places) const;
+  /// Adds the shade of the crease above the tarsus, which a lowered lid has.
+  void shade(double lowered, std::vector<SkinFolds::Shade>& shades) const;
 
   /// Whether a point on a lid's edge at rest is on the upper lid.
   bool is_above(const Eigen::Vector3f& point) const;
@@ -49,20 +52,21 @@ class UpperLid {
   Eigen::Matrix3f turn_at(const Eigen::Vector3f& point, double lowered) const;
 
  private:
-  /// Angles of a point seen from the eyeball's centre: `along` the axis from the plane of the
-  /// gaze, and `up` about the axis from straight ahead; rad.
-  struct Angles {
-    double along, up;
+  /// A point seen from the eyeball's centre: mm `along` the axis and `away` from it, and rad `up`
+  /// about the axis from straight ahead.
+  struct Place {
+    double along, away, up;
   };
-  /// The opening at one angle along the axis.
+  /// The opening at one place along the axis, rad, and the distance of its edges from the axis, mm.
   struct Gap {
-    double bottom = 0, top = 0;
+    double bottom = 0, top = 0, away = 0;
   };
   struct Member {
     int vertex;
     float turn;   // rad, when the lid is closed
     float share;  // of the turn of the lid's edge
     float along;
+    float crease, raised;  // depth of the crease of a closed lid, 0 to 1; displacement by it, mm
   };
   /// A vertex beside the edge of a lid, at rest.
   struct EdgeVertex {
@@ -70,20 +74,22 @@ class UpperLid {
     double along, up;
   };
   UpperLid(const Eyeball& eyeball) : eyeball_(eyeball) {}
-  Angles angles_of(const Eigen::Vector3d& p) const;
-  Eigen::Vector3d direction(const Angles& angles) const;
+  Place place_of(const Eigen::Vector3d& p) const;
+  Eigen::Vector3d point_at(const Place& place) const;
   Gap gap_at(double along) const;
-  double way_at(double along) const;  // of the edge down to the lower lid, rad
+  double way_at(double along) const;      // of the edge down to the lower lid, rad
+  double spread_way(double along) const;  // the same with that of its neighbours
   void scan(const TriMesh& near);
   void taper();
   bool lean_on_canthi();
   void collect(std::span<const Eigen::Vector3f> rest);
-  void collect_edge(int vertex, const Angles& at, const Gap& gap);
+  void collect_edge(int vertex, const Place& at, const Gap& gap);
   std::vector<float> widening(std::span<const Eigen::Vector3f> places) const;
 
   Eyeball eyeball_;
   Eigen::Vector3d axis_ = {1, 0, 0}, ahead_ = {0, -1, 0}, up_ = {0, 0, 1};
-  std::vector<Gap> gaps_;  // by angle along the axis
+  std::vector<Gap> gaps_;        // by place along the axis
+  double first_ = 0, last_ = 0;  // the canthi, mm along the axis
   double widest_ = 0, staring_ = 0;
   std::vector<Member> members_;
   std::vector<EdgeVertex> upper_edge_, lower_edge_;

@@ -279,9 +279,17 @@ const GpuMesh& Drawable::rest_mesh() {
 void Drawable::move_face(std::vector<Eigen::Vector3f> positions, const FaceLook& look,
                          std::vector<Eigen::Vector3f>& normals_scratch) {
   even_rim(positions, uneven);
-  const auto shades =
-      folds && look.folded ? folds->apply(positions) : std::vector<SkinFolds::Shade>{};
-  if (look.alive) look.alive(positions);
+  auto shades = folds && look.folded ? folds->apply(positions) : std::vector<SkinFolds::Shade>{};
+  if (look.alive)
+    for (const SkinFolds::Shade& shade : look.alive(positions)) shades.push_back(shade);
+  if (look.relief || relief_moved) {
+    std::vector<Eigen::Vector3f> tied;
+    for (const auto& v : part->mesh.vertices) tied.push_back(v.cast<float>());
+    even_rim(tied, uneven);
+    if (look.relief) look.relief(tied);
+    mesh.send_rest(tied);
+    relief_moved = static_cast<bool>(look.relief);
+  }
   vertex_normals(positions, triangles(), normals_scratch);
   mesh.send_shape(positions, normals_scratch);
   auto now = colors;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "render/face/mouth_lining.h"
+#include "render/face/skin_folds.h"
 #include "render/gl/gpu_mesh.h"
 #include "render/mesh/cover_grid.h"
 #include "render/mesh/creases.h"
@@ -15,8 +16,6 @@
 #include "sim/frame/part.h"
 
 namespace condyle {
-
-class SkinFolds;
 
 /// A part ready to be drawn.
 struct Drawable {
@@ -36,6 +35,7 @@ struct Drawable {
   std::size_t finer_vertices = 0;
   std::vector<Eigen::Vector3f> undressed = {};  // vertices of a finer mesh without colours as yet
   bool covered = false;
+  bool relief_moved = false;
   std::vector<Eigen::Vector3i> own = {};  // triangles, where they are a subset of the part's
   std::vector<int> uneven = {};           // a rim of theirs, drawn smooth
   std::span<const Eigen::Vector3i> triangles() const {
@@ -58,8 +58,11 @@ struct Drawable {
 
   /// Changes of a face's shape in pictures alone.
   struct FaceLook {
-    bool folded = true;                                          // with the folds of its skin
-    std::function<void(std::span<Eigen::Vector3f>)> alive = {};  // moves its vertices
+    bool folded = true;  // with the folds of its skin
+    // Moves its vertices and returns the shade of creases.
+    std::function<std::vector<SkinFolds::Shade>(std::span<Eigen::Vector3f>)> alive = {};
+    // Moves the places, at rest, that the fine relief of its skin is tied to.
+    std::function<void(std::span<Eigen::Vector3f>)> relief = {};
   };
   /// Sends a deformed face, its normals and the shade of its creases.
   void move_face(std::vector<Eigen::Vector3f> positions, const FaceLook& look,

@@ -74,7 +74,11 @@ void FaceShape::send(std::span<const Part> parts, std::span<Drawable> drawables,
       living_.emplace(parts, float_positions(rest), face->triangles(), nose_tip_);
     }
     drawn.alive = [&](std::span<Eigen::Vector3f> places) {
-      living_->move_face(*look.life, look.signs, places);
+      return living_->move_face(*look.life, look.signs, places);
+    };
+    // The skin of a closed lid is unfolded, not drawn out to streaks.
+    drawn.relief = [&](std::span<Eigen::Vector3f> places) {
+      living_->move_lids(look.signs, places);
     };
   }
   face->move_face(places_.empty() ? float_positions(rest) : places_, drawn, normals_);

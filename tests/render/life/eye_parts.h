@@ -22,10 +22,10 @@ inline TriMesh eyeball() {
   return mesh;
 }
 
-/// A thin skin round the eyeball with an opening as between lids, tilted.
-inline TriMesh open_lids() {
+/// A thin skin round the eyeball with an opening as between lids, tilted. around: its triangles.
+inline TriMesh open_lids(int around = 120) {
   constexpr double lid_mm = 12.2;
-  TriMesh mesh = ball(eye_centre, lid_mm, 120);
+  TriMesh mesh = ball(eye_centre, lid_mm, around);
   std::erase_if(mesh.triangles, [&](const Eigen::Vector3i& t) {
     const Eigen::Vector3d p =
         (mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]) / 3 - eye_centre;

@@ -44,11 +44,15 @@ class LivingPatient : public testing::Test {
     living_.move_face({}, signs, places);
     return places;
   }
-  /// Lines of sight that meet an eyeball first, one per 0.25 mm2 seen from the front and turned.
-  int seen(const LifeSigns& signs, double turn) const {
+  TriMesh skin_of(const LifeSigns& signs) const {
     TriMesh skin = face_.mesh;
     const auto places = moved(signs);
     for (std::size_t v = 0; v < places.size(); ++v) skin.vertices[v] = places[v].cast<double>();
+    return skin;
+  }
+  /// Lines of sight that meet an eyeball first, one per 0.25 mm2 seen from the front and turned.
+  int seen(const LifeSigns& signs, double turn) const {
+    const TriMesh skin = skin_of(signs);
     auto balls = floats(eyes_.mesh);
     std::vector<Vector3f> normals(balls.size(), Vector3f::UnitZ());
     for (std::size_t i = 0; i < patient().parts.size(); ++i)
@@ -79,6 +83,49 @@ TEST_F(LivingPatient, ClosedLidsHideBothEyeballsFromTheFrontAndThreeQuarters) {
     EXPECT_LT(half, 0.75 * open);
     for (const double gaze : {-0.12, 0.0, 0.12})
       EXPECT_EQ(seen({.closure = 1, .gaze_left = gaze}, turn), 0) << turn << " " << gaze;
+  }
+}
+
+TEST_F(LivingPatient, ClosedLidsCoverTheCaruncleWithoutAStep) {
+  // The deepest step between lines of sight 0.25 mm apart, nasal of the left eye's lashes.
+  const auto step = [&](const LifeSigns& signs) {
+    const TriMesh skin = skin_of(signs);
+    const TriangleTree tree(skin);
+    double most = 0;
+    for (double x = 16; x <= 21; x += 0.25) {
+      std::optional<double> before;
+      for (double z = 9; z <= 20; z += 0.25) {
+        const auto hit = tree.ray_cast(Vector3d(x, -150, z), Vector3d::UnitY(), 90);
+        if (hit && before) most = std::max(most, std::abs(hit->distance - *before));
+        before = hit ? std::optional(hit->distance) : std::nullopt;
+        if (signs.closure == 1) {
+          EXPECT_TRUE(hit) << x << " " << z;
+        }
+      }
+    }
+    return most;
+  };
+  EXPECT_GT(step({}), 2);
+  EXPECT_LT(step({.closure = 1}), 0.75);
+}
+
+TEST_F(LivingPatient, AClosedLidHasACreaseAboveItsPlate) {
+  const LivingEyes eyes(eyes_.mesh);
+  const TriMesh skin = skin_of({.closure = 1});
+  const TriangleTree tree(skin);
+  for (const Eyeball& ball : eyes.eyeballs()) {
+    const Vector3d centre = ball.centre.cast<double>();
+    const auto away = [&](double up_deg) {
+      const double up = up_deg * M_PI / 180;
+      const Vector3d out(0, -std::cos(up), std::sin(up));
+      const auto hit = tree.ray_cast(centre + 30 * out, -out, 30);
+      return hit ? 30 - hit->distance : 0;
+    };
+    // How far the skin lies below the mean of what is 10 degrees above and below it.
+    const auto sagging = [&](double up_deg) {
+      return (away(up_deg - 10) + away(up_deg + 10)) / 2 - away(up_deg);
+    };
+    EXPECT_GT(sagging(18), 0.3);
   }
 }
 

@@ -10,8 +10,8 @@ namespace {
 using LifePictures = WithContext;
 
 /// Eyeballs in blue between the lids of a skin.
-std::vector<Part> eye_and_lids() {
-  TriMesh eye = eyeball(), skin = open_lids();
+std::vector<Part> eye_and_lids(int around = 120) {
+  TriMesh eye = eyeball(), skin = open_lids(around);
   eye.colors.assign(eye.vertices.size(), {0.1f, 0.2f, 1});
   skin.colors.assign(skin.vertices.size(), {0.8f, 0.6f, 0.5f});
   return {make_part("face", Role::face, skin), make_part("eyes", Role::eyes, eye)};
@@ -92,6 +92,33 @@ TEST_F(LifePictures, AreThoseWithoutLifeOnceItIsOffAndInGlass) {
   const Image glass = renderer.picture(eye_camera(), off);
   off.life = Life{};
   EXPECT_EQ(renderer.picture(eye_camera(), off).rgba, glass.rgba);
+}
+
+/// Roughness of the middle of a picture across and along, from second differences of its green.
+std::pair<double, double> roughness(const Image& image) {
+  constexpr int step = 3;
+  double across = 0, along = 0;
+  for (int y = image.height / 4; y < 3 * image.height / 4; ++y)
+    for (int x = image.width / 4; x < 3 * image.width / 4; ++x) {
+      const auto green = [&](int dx, int dy) { return double(pixel(image, x + dx, y + dy).g); };
+      across += std::pow(green(-step, 0) - 2 * green(0, 0) + green(step, 0), 2);
+      along += std::pow(green(0, -step) - 2 * green(0, 0) + green(0, step), 2);
+    }
+  return {across, along};
+}
+
+TEST_F(LifePictures, TheReliefOfAClosedLidsSkinIsNotDrawnOutToStreaks) {
+  const std::vector<Part> parts = eye_and_lids(240);
+  SceneRenderer renderer(parts);
+  renderer.update(frame_at(time_of(1)));
+  Camera camera = front_camera(8);
+  camera.target = eye_centre + Eigen::Vector3d(0, 0, 2);
+  auto settings = alive();
+  settings.width = settings.height = 400;
+  const auto [across, along] = roughness(renderer.picture(camera, settings));
+  EXPECT_GT(along, 1000);
+  EXPECT_LT(across / along, 1.25);
+  EXPECT_GT(across / along, 0.8);
 }
 
 TEST(LifeNote, SaysThatItIsForLooksAndWhatThePatientLacks) {
