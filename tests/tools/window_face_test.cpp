@@ -1,8 +1,11 @@
 // The face's expression by the sliders of the window, and by a motion in words.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <sstream>
 
 #include "engine/mesh_io/mesh_files.h"
+#include "render/life/life_signs.h"
 #include "window_session.h"
 
 namespace condyle::test {
@@ -91,6 +94,42 @@ TEST_F(WindowSession, SlidersMoveTheLiveFaceAndAreSavedWithTheSession) {
   EXPECT_TRUE(wait_until([&](const Json& s) {
     return s["edits"]["expression"] == kept && excitation(s) > 1;
   })) << state()["edits"]["expression"].dump();
+  EXPECT_TRUE(press("ctrl+q"));
+  EXPECT_EQ(wait_for_end(), 0);
+}
+
+TEST_F(WindowSession, TheLifeSwitchClosesTheEyesOfABlinkAndOpensThemAgain) {
+  double blink_s = 0;
+  while (life_signs(blink_s).closure < 1) blink_s += 0.001;
+  start({"--motion", fmt::format("hold {:.3f}", blink_s + 0.01)});
+  ASSERT_TRUE(wait_until(idle, 120));
+  EXPECT_TRUE(press("a"));
+  const auto scrub = rect("scrub");
+  drag(scrub[0] + 0.1 * scrub[2], scrub[1] + scrub[3] / 2, scrub[0] + 1.1 * scrub[2],
+       scrub[1] + scrub[3] / 2);
+  click("left-tab:Look");
+  ASSERT_TRUE(wait_for_item("clip"));
+  const auto tab = rect("left-tab:Look");
+  EXPECT_TRUE(xdotool({"mousemove", px(tab[0]), px(tab[1] + 300), "click", "--repeat", "30",
+                       "--delay", "40", "5"}));
+  ASSERT_TRUE(wait_for_item("life"));
+  see("without");
+  const Json measured = state()["frame"];
+  const auto is_on = [](const Json& s) { return s["edits"]["life"] == true; };
+  EXPECT_FALSE(is_on(state()));
+  click("life");
+  EXPECT_TRUE(wait_until(is_on, 20));
+  EXPECT_GT(see("eyes-closed"), 0.001);
+  EXPECT_EQ(state()["frame"], measured) << "look only";
+  EXPECT_TRUE(press("ctrl+z"));
+  EXPECT_TRUE(wait_until([&](const Json& s) { return !is_on(s); }, 20));
+  EXPECT_GT(see("undone"), 0.001);
+  EXPECT_TRUE(press("ctrl+y"));
+  EXPECT_TRUE(wait_until(is_on, 20));
+  EXPECT_GT(see("redone"), 0.001);
+  click("life");
+  EXPECT_TRUE(wait_until([&](const Json& s) { return !is_on(s); }, 20));
+  EXPECT_GT(see("off"), 0.001);
   EXPECT_TRUE(press("ctrl+q"));
   EXPECT_EQ(wait_for_end(), 0);
 }
