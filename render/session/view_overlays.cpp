@@ -117,10 +117,12 @@ std::vector<TreeItem> muscle_items(const SessionPatient& patient) {
 std::vector<TreeItem> expression_items(const SessionPatient& patient) {
   const TissueModel* model = patient.scene.tissue.get();
   if (!model || face_muscles_of(*model).empty()) return {};
+  const auto label = [](const NamedExpression& each) {
+    if (each.action_unit()) return each.name + ", " + each.action;
+    return each.name.size() == 1 ? "Sound " + each.name : display_name(each.name);
+  };
   std::vector<TreeItem> items;
-  for (const NamedExpression& each : named_expressions())
-    items.push_back(
-        {each.name, each.action_unit() ? each.name + ", " + each.action : display_name(each.name)});
+  for (const NamedExpression& each : named_expressions()) items.push_back({each.name, label(each)});
   return items;
 }
 
