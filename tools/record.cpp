@@ -150,10 +150,19 @@ std::pair<PicturePlan, std::vector<OtherLook>> planned_pictures(const RecordOpti
   return {std::move(plan), std::move(looks)};
 }
 
+/// The folders of --out and --also, one after the other.
+std::string folders_of(const RecordOptions& options, bool absolute = false) {
+  const auto written = [&](const fs::path& folder) {
+    return (absolute ? fs::absolute(folder).lexically_normal() : folder).string();
+  };
+  std::string list = written(options.out);
+  for (const auto& text : options.also) list += " and " + written(folder_and_parts(text).first);
+  return list;
+}
+
 /// What an interruption says.
-std::string pictures_stay(const fs::path& out) {
-  return "condyle: interrupted; the finished pictures stay in " +
-         fs::absolute(out).lexically_normal().string() +
+std::string pictures_stay(const RecordOptions& options) {
+  return "condyle: interrupted; the finished pictures stay in " + folders_of(options, true) +
          ", and the same command with --resume draws the others";
 }
 
@@ -213,7 +222,7 @@ int run_record(const RecordOptions& options, const CommonOptions& common) {
                          .identity = recording_identity(scene, motion, times.all(), settings,
                                                         options.motion.respect_contact)});
   std::optional<Interruption> interruption;
-  if (options.pictures) interruption.emplace(pictures_stay(options.out));
+  if (options.pictures) interruption.emplace(pictures_stay(options));
   for (int i = 0; i < times.count; ++i) {
     FrameState frame = playback.at(times[i]);
     const auto done = [&](int number, const FrameState& drawn) {
@@ -256,7 +265,7 @@ int run_record(const RecordOptions& options, const CommonOptions& common) {
                expression_text(expression, before ? &*before : nullptr));
     if (pictures && pictures->kept() > 0)
       fmt::print(stderr, "{} frames were there already and were kept\n", pictures->kept());
-    fmt::print(stderr, "results are in {}\n", options.out.string());
+    fmt::print(stderr, "results are in {}\n", folders_of(options));
   }
   return 0;
 }

@@ -184,6 +184,17 @@ TEST(Record, AnotherLookOfTheSameMotionIsTheOneRecordedByItself) {
   EXPECT_NE(pictures(folder / "out/frames"), pictures(folder / "other/frames"));
   EXPECT_EQ(read_text(folder / "other/hashes.csv"), read_text(folder / "alone/hashes.csv"));
   EXPECT_EQ(read_trace(folder / "out/trace.csv").bits, read_trace(folder / "all/trace.csv").bits);
+  EXPECT_NE(both.err.find("results are in " + std::string(folder / "out") + " and " +
+                          std::string(folder / "other")),
+            std::string::npos)
+      << both.err;
+
+  ASSERT_TRUE(fs::remove(folder / "other/frames/000001.png"));
+  ASSERT_TRUE(fs::remove(folder / "out/frames/000002.png"));
+  const auto resumed = record("out", {"--resume", "--also", folder / "other=" + bones});
+  ASSERT_EQ(resumed.code, 0) << resumed.err;
+  EXPECT_EQ(pictures(folder / "other/frames"), pictures(folder / "alone/frames"));
+  EXPECT_EQ(pictures(folder / "out/frames"), pictures(folder / "all/frames"));
 
   const auto refused = [&](const std::string& also) {
     const auto outcome = record("refused", {"--also", also});
