@@ -53,7 +53,7 @@ class Balance {
   /// Tensions that balance `outer` within bounds, or nearly; starts from the previous ones.
   void solve(const VectorXd& outer);
   /// Excludes the elements at these nodes from prestrain.
-  void let_go(const std::vector<char>& node);
+  void exclude(const std::vector<char>& node);
   /// Writes rest lengths, volumes and the result.
   void write(SpringPrismMesh& mesh, Equilibrium& result) const;
 
@@ -104,7 +104,7 @@ Balance::Balance(const SpringPrismMesh& mesh, const Nodes& x, const EquilibriumS
     anchor_.segment<3>(3 * mesh.anchor_node[i]).array() += 2 * mesh.anchor_stiffness[i];
 }
 
-void Balance::let_go(const std::vector<char>& node) {
+void Balance::exclude(const std::vector<char>& node) {
   for (std::size_t i = 0; i < elements_.size(); ++i) {
     bool meets = false;
     if (i < springs_.size())
@@ -336,7 +336,7 @@ Equilibrium balance_strains(SpringPrismMesh& mesh, const MeshLoads& loads, const
     const std::vector<char> unstable = unstable_nodes(mesh, x);
     result.stable = unstable.empty();
     if (result.stable) break;
-    balance.let_go(unstable);
+    balance.exclude(unstable);
   }
 
   // Constant forces hold the remainder.
