@@ -345,17 +345,19 @@ double gap_left(const std::vector<PointContact>& contacts, const Nodes& x) {
 }  // namespace
 
 ContactSolveResult solve_contact(const std::function<ContactLists(const Nodes&)>& query,
-                                 const std::function<Solved()>& solve, MeshLoads& loads, Nodes& x,
-                                 const ContactSolveSettings& settings, const ContactLists& before) {
+                                 const std::function<Solved(bool contacts_settled)>& solve,
+                                 MeshLoads& loads, Nodes& x, const ContactSolveSettings& settings,
+                                 const ContactLists& before) {
   // Planes that have not converged by then may oscillate between two directions.
   const int undamped_searches = settings.damped ? 0 : 2;
   ContactSolveResult result;
   ContactLists used = query(x);
   for (std::size_t i = 0; i < before.size(); ++i)
     used[i] = with_history(before[i], used[i], x, 0, settings.relaxed);
+  bool contacts_settled = false;
   while (true) {
     set_contacts(used, loads);
-    const Solved solved = solve();
+    const Solved solved = solve(contacts_settled);
     ++result.solves;
     result.contacts = query(x);
     result.error_mm = result.gap_mm = 0;
@@ -369,7 +371,8 @@ ContactSolveResult solve_contact(const std::function<ContactLists(const Nodes&)>
     const auto within = [&](double error_mm, double gap_mm) {
       return result.error_mm <= error_mm && result.gap_mm <= gap_mm;
     };
-    result.settled = solved == Solved::at_minimum && within(settings.tolerance_mm, settings.gap_mm);
+    contacts_settled = within(settings.tolerance_mm, settings.gap_mm);
+    result.settled = solved == Solved::at_minimum && contacts_settled;
     const bool as_good_as_may_be =
         solved == Solved::budget_spent && within(settings.rough_mm, settings.rough_mm);
     if (result.settled || as_good_as_may_be || result.solves >= settings.max_contact_searches)

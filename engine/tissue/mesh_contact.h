@@ -152,10 +152,12 @@ struct ContactSolveResult {
 /// Result of a call of `solve`: at the minimum (or as near as possible), in progress, or with the
 /// budget spent; the result is then accepted once its contacts are within `rough_mm`.
 enum class Solved { at_minimum, in_progress, budget_spent };
-/// `solve` moves x downhill under `loads`, whose contacts are set before each call. `before`: the
-/// contacts of an earlier solve, or empty.
+/// `solve` moves x downhill under `loads`, whose contacts are set before each call; its argument is
+/// true where the last search left contacts within their tolerances. `before`: the contacts of an
+/// earlier solve, or empty.
 ContactSolveResult solve_contact(const std::function<ContactLists(const Nodes&)>& query,
-                                 const std::function<Solved()>& solve, MeshLoads& loads, Nodes& x,
+                                 const std::function<Solved(bool contacts_settled)>& solve,
+                                 MeshLoads& loads, Nodes& x,
                                  const ContactSolveSettings& settings = {},
                                  const ContactLists& before = {});
 

@@ -81,6 +81,9 @@ constexpr int refactor_beside_loop_after = 8, refactor_beside_loop_after_all = 2
 /// buckles, contact planes from before the buckling mislead the solver (median of an opening 8
 /// iterations with or without, 95th percentile 36 instead of 49).
 constexpr int iterations_per_contact = 8;
+/// The same where the last search changed contacts by no more than their tolerances: a minimizer
+/// that is not restarted converges sooner (frames of a smile 69 iterations instead of 81).
+constexpr int iterations_per_settled_contact = 32;
 constexpr int max_contact_rounds = 40;
 /// A frame whose contacts are off by more than this has not converged.
 constexpr double accepted_contact_mm = 0.1;
@@ -107,13 +110,15 @@ class FrameSolve {
         state_(state),
         energy_(model.mesh->elements, loads, budget.threads, model.mesh->runs) {}
 
-  /// A number of iterations under the current loads.
-  Solved operator()() {
+  /// A number of iterations under the current loads; more where the contacts in them are settled.
+  Solved operator()(bool contacts_settled) {
     MinimizeSettings settings;
     settings.tolerance_mm = budget_.tolerance_mm;
     const int left = budget_.max_iterations - state_.iterations;
-    settings.max_iterations = std::clamp(
-        std::min(iterations_per_contact, refactor_after_ - since_factor_), 1, std::max(left, 1));
+    const int per_contact =
+        contacts_settled ? iterations_per_settled_contact : iterations_per_contact;
+    settings.max_iterations =
+        std::clamp(std::min(per_contact, refactor_after_ - since_factor_), 1, std::max(left, 1));
     settings.check_last = settings.max_iterations < left;
     const MinimizeResult result = minimize(energy_, factor_.now(), settings, state_.nodes);
     state_.iterations += result.iterations;
@@ -235,8 +240,8 @@ TissueState solve_step(const TissueModel& model, const TissueState& previous,
         return find_tissue_contacts(contact, from_mesh, x, budget.threads, &near,
                                     budget.contact_firmness);
       },
-      [&] { return solve(); }, loads, state.nodes, contact_settings,
-      moved_contacts(model, last, X_CB));
+      [&](bool contacts_settled) { return solve(contacts_settled); }, loads, state.nodes,
+      contact_settings, moved_contacts(model, last, X_CB));
   factor.add_iterations(state.iterations);
   if (state.iterations > refactor_beside_loop_after ||
       (!state.converged && factor.iterations_used() > refactor_beside_loop_after_all))

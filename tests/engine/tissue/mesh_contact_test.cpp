@@ -83,7 +83,7 @@ ContactSolveResult settle(const SpringPrismMesh& mesh, int sheets, MeshLoads& lo
                           const std::function<ContactLists(const Nodes&)>& look, Nodes& x,
                           double tolerance_mm = 1e-4) {
   return solve_contact(look,
-                       [&] {
+                       [&](bool) {
                          const HessianFactor factor(mesh, loads, sheets, x);
                          SpringPrismEnergy energy(mesh, loads, 1);
                          const auto result = minimize_with_refactorization(
@@ -266,6 +266,28 @@ TEST(MeshContact, ASlabDrapesOverABallItDoesNotEnter) {
   }
   for (const auto& f : force) EXPECT_LT(f.norm(), 0.02 * most);
   EXPECT_GT(pressed, 10);
+}
+
+TEST(MeshContact, TheSolverLearnsWhetherContactsAreSettled) {
+  const ContactObstacle ball(test::sphere(5, 15), wide_box(), {});
+  const double heights[] = {15.2, 14, 17, 17};  // of the node after each call
+  Nodes x = {Vector3d(0, 0, 15.2)};
+  std::vector<bool> settled;
+  MeshLoads loads;
+  solve_contact(
+      [&](const Nodes& at) {
+        ContactLists lists(1);
+        find_obstacle_contacts({MeshPoint::of_node(0)}, {0.0}, ball, Pose{}, at, {}, lists[0]);
+        return lists;
+      },
+      [&](bool contacts_settled) {
+        x[0].z() = heights[settled.size()];
+        settled.push_back(contacts_settled);
+        return settled.size() < std::size(heights) ? Solved::in_progress : Solved::at_minimum;
+      },
+      loads, x, {.max_contact_searches = 4});
+  // Before any solve nothing is known; 1 mm inside the ball the node is too far from its surface.
+  EXPECT_EQ(settled, (std::vector<bool>{false, true, false, true}));
 }
 
 TEST(MeshContact, StifferContactStartsFromTheForcesOfTheSofter) {
