@@ -244,7 +244,7 @@ std::shared_ptr<const TissueModel> build_tissue(const Case& patient, const Tissu
   if (plan.down)
     model->support.node_force = weight_of_nodes(mesh->elements, plan.down->normalized());
   if (plan.down || plan.turgor.value_or(1) < 1) balance(*mesh, *model);
-  mesh->runs = std::make_shared<const ElementBatches>(mesh->elements);
+  prepare_elements(*mesh);
 
   report(progress, "soft tissue: opening path", 0.6);
   std::future<std::shared_ptr<const FaceDisplay>> display =

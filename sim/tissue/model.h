@@ -27,6 +27,7 @@ struct TissueMesh {
   Nodes rest;                              // mm, in the cranium's frame, in `node_of` order
   SpringPrismMesh elements;
   std::shared_ptr<const ElementBatches> runs;  // SIMD layout of the elements
+  std::vector<double> own_stiffness;           // of each node at rest, N/mm: see own_stiffness()
 };
 
 /// What an anchor represents.

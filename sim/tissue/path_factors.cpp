@@ -26,9 +26,9 @@ PathFactors::Factor PathFactors::make(std::size_t knot) const {
   const Nodes& rest = planned_ ? planned_->nodes : mesh_->rest;
   const Nodes& x = knot == 0 ? rest : path_->nodes[knot];
   MeshLoads loads;
-  set_contacts(
-      find_tissue_contacts(*contact_, poses_from_mesh(planned_.get(), at.X_CB), x, threads_),
-      loads);
+  set_contacts(find_tissue_contacts(*contact_, mesh_->own_stiffness,
+                                    poses_from_mesh(planned_.get(), at.X_CB), x, threads_),
+               loads);
   return std::make_shared<HessianFactor>(mesh_->elements, loads, mesh_->sheets, x, threads_);
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "engine/tissue/equilibrium.h"
+#include "engine/tissue/own_stiffness.h"
 
 namespace condyle {
 
@@ -25,6 +26,11 @@ void balance(TissueMesh& mesh, TissueModel& model) {
                   "forces of up to "
                   "{:.2g} N hold the rest at {} of {} points",
                   balanced.force_held, balanced.nodes_held, mesh.rest.size()));
+}
+
+void prepare_elements(TissueMesh& mesh) {
+  mesh.runs = std::make_shared<const ElementBatches>(mesh.elements);
+  mesh.own_stiffness = own_stiffness(mesh.elements, mesh.rest);
 }
 
 void measure_rest(TissueModel& model, int threads) {

@@ -64,7 +64,9 @@ int count_inverted(const SpringPrismMesh& elements, const Nodes& x) {
 
 MeshLoads contact_loads(const TissueModel& model, std::span<const Pose> X_CB, const Nodes& x) {
   MeshLoads loads = loads_at(model, X_CB);
-  set_contacts(find_tissue_contacts(*model.contact, poses_from_mesh(model, X_CB), x), loads);
+  set_contacts(find_tissue_contacts(*model.contact, model.mesh->own_stiffness,
+                                    poses_from_mesh(model, X_CB), x),
+               loads);
   return loads;
 }
 
@@ -237,8 +239,8 @@ TissueState solve_step(const TissueModel& model, const TissueState& previous,
   FrameSolve solve(model, loads, budget, factor, state);
   ContactSolveResult touching = solve_contact(
       [&](const Nodes& x) {
-        return find_tissue_contacts(contact, from_mesh, x, budget.threads, &near,
-                                    budget.contact_firmness);
+        return find_tissue_contacts(contact, mesh.own_stiffness, from_mesh, x, budget.threads,
+                                    &near, budget.contact_firmness);
       },
       [&](bool contacts_settled) { return solve(contacts_settled); }, loads, state.nodes,
       contact_settings, moved_contacts(model, last, X_CB));

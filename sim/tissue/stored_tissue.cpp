@@ -7,6 +7,7 @@
 #include "sim/tissue/anatomy.h"
 #include "sim/tissue/model_fields.h"
 #include "sim/tissue/path_factors.h"
+#include "sim/tissue/rest_state.h"
 
 namespace condyle {
 namespace {
@@ -104,7 +105,7 @@ std::shared_ptr<const TissueModel> model_from(std::string_view bytes, const Case
   stored.display.face_rest = patient.find(Role::face)->mesh.vertices;
 
   auto mesh = std::make_shared<TissueMesh>(std::move(stored.mesh));
-  mesh->runs = std::make_shared<const ElementBatches>(mesh->elements);
+  prepare_elements(*mesh);
   auto model = std::make_shared<TissueModel>();
   model->mesh = std::move(mesh);
   model->support = std::move(stored.support);

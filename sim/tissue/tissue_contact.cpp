@@ -9,6 +9,7 @@
 #include "engine/core/user_cache.h"
 #include "engine/mesh/measure.h"
 #include "engine/tissue/layered_mesh.h"
+#include "engine/tissue/own_stiffness.h"
 
 namespace condyle {
 namespace {
@@ -31,7 +32,11 @@ constexpr double corner_mm = 5;          // nearer to a corner both lips merge
 constexpr double deepest_lip_mm = 0.4;
 constexpr double apart_mm = 0.02;       // between the lips after their nodes have been moved apart
 constexpr double lips_stiffness = 0.5;  // N/mm; lips are compliant to each other
-constexpr double skin_stiffness = 1;    // N/mm; the value that needs the fewest iterations
+/// Contact is at most this many times as stiff as the tissue by itself. Frames of an opening with a
+/// smile, 2,140 nodes, take 45 iterations (95th percentile 140); 69 (342) without a limit, 48 (145)
+/// with 5, 52 (187) with 8.
+constexpr double over_own_stiffness = 6;
+constexpr double skin_stiffness = 1;  // N/mm; the value that needs the fewest iterations
 constexpr double swept_mm = 10;  // farthest that points move from their rest relative to a bone
 
 /// Columns along one lip's edge, from the right corner to the left, both included.
@@ -370,9 +375,11 @@ TissueContact make_contact(const ContactSource& from, std::span<const BodySurfac
   return contact;
 }
 
-ContactLists find_tissue_contacts(const TissueContact& contact, std::span<const Pose> X_CB,
+ContactLists find_tissue_contacts(const TissueContact& contact,
+                                  std::span<const double> own_stiffness, std::span<const Pose> X_CB,
                                   const Nodes& x, int threads, NearObstacles* known,
                                   double firmness) {
+  const bool firm = firmness > 1;
   firmness *= contact.firmness;
   const std::size_t obstacles = contact.obstacles.size();
   if (known) known->resize(obstacles);
@@ -412,6 +419,7 @@ ContactLists find_tissue_contacts(const TissueContact& contact, std::span<const 
       on_obstacle(i);
     else
       on_self(static_cast<SelfContact>(i - obstacles));
+    if (!firm) limit_stiffness(own_stiffness, over_own_stiffness, lists[i]);
   });
   return lists;
 }

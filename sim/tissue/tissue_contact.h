@@ -120,8 +120,10 @@ inline std::size_t contact_lists(const TissueContact& contact) {
 using NearObstacles = std::vector<NearPoints>;
 
 /// All contacts of the tissue at x, with the bodies at X_CB. `firmness`: contact stiffness over the
-/// default.
-ContactLists find_tissue_contacts(const TissueContact& contact, std::span<const Pose> X_CB,
+/// default. Up to 1, contact of soft tissue is softer, by `own_stiffness` of each node (see
+/// TissueMesh): frames need fewer iterations. Predictions from rest converge where it is firm.
+ContactLists find_tissue_contacts(const TissueContact& contact,
+                                  std::span<const double> own_stiffness, std::span<const Pose> X_CB,
                                   const Nodes& x, int threads = 1, NearObstacles* known = nullptr,
                                   double firmness = 1);
 

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "engine/tissue/mesh_contact.h"
+#include "engine/tissue/spring_prism.h"
+
+namespace condyle {
+
+/// How stiffly the mesh holds each node at x while all others stay, N/mm in the units of its
+/// springs: the harmonic mean over the directions, which a node that is soft in one has near that
+/// one's (a thousandth of the stiffest direction's at least). Anchors are not included.
+std::vector<double> own_stiffness(const SpringPrismMesh& mesh, const Nodes& x);
+
+/// Limits the stiffness of contact springs to `ratio` times that of the nodes they act on. A
+/// contact much stiffer than its tissue changes the energy's curvature by that ratio whenever it
+/// begins or ends, and a minimizer with a preconditioner of another state needs many iterations
+/// then. Multipliers enforce the contact all the same, see PointContact::push.
+void limit_stiffness(std::span<const double> own, double ratio,
+                     std::vector<PointContact>& contacts);
+
+}  // namespace condyle
