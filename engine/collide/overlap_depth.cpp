@@ -2,7 +2,6 @@
 #include <array>
 #include <cmath>
 #include <queue>
-#include <set>
 #include <vector>
 
 #include "engine/collide/solid.h"
@@ -72,6 +71,7 @@ class DepthSearch {
     Pose X;                              // of the surface in the solid's coordinates
     const TriangleTree* part = nullptr;  // of the solid; only points nearest to it count
     std::vector<int> crossing;           // faces that cross the solid, or its part, ascending
+    std::vector<int> corner_place = {};  // per corner: its last place in corner_places_, or -1
 
     void put_crossing(const std::vector<int>& triangles) {
       for (const int t : triangles) crossing.push_back(surface.slot_[t]);
@@ -92,6 +92,11 @@ class DepthSearch {
     Eigen::Vector3d at = Eigen::Vector3d::Zero();
     double depth = -infinity;
     int triangle = -1;
+  };
+  struct CornerPlace {
+    std::size_t shell;
+    Place place;
+    int earlier;  // of the same corner in another shell; -1: none
   };
   struct Item {
     Into into;
@@ -152,6 +157,21 @@ class DepthSearch {
       outward = tree.pseudonormal(tree.nearest(p, place.depth + reach_rounding_mm));
     }
     return place;
+  }
+
+  /// The same for a corner of a face, which its neighbours share: evaluated once for each shell.
+  Place look_at_corner(Into into, int face, int k, const Eigen::Vector3d& p, const Place& near) {
+    Side& from = sides_[into.side];
+    if (from.corner_place.empty()) from.corner_place.assign(from.surface.first_at_.size() - 1, -1);
+    int& last = from.corner_place[from.surface.face_corners_[face][k]];
+    for (int i = last; i >= 0; i = corner_places_[i].earlier)
+      if (corner_places_[i].shell == into.shell) {
+        ++evaluations_;  // the limit counts them too
+        return corner_places_[i].place;
+      }
+    corner_places_.push_back({into.shell, look_at_point(into, p, near), last});
+    last = static_cast<int>(corner_places_.size()) - 1;
+    return corner_places_.back().place;
   }
 
   /// Upper bound of the depth of any point of t. It is at most near.depth plus the distance from
@@ -265,7 +285,7 @@ class DepthSearch {
       across = touched(into, face);
       if (across < 0) return middle;
     }
-    for (const auto& corner : face) look_at_point(into, corner, middle);
+    for (int k = 0; k < 3; ++k) look_at_corner(into, index, k, face[k], middle);
     wait(bound(into, face, middle), radius_about(face, middle.at),
          {.into = into, .face = face, .middle = middle, .across = across});
     return middle;
@@ -295,12 +315,13 @@ class DepthSearch {
   bool offer_inside(Into into) {
     const Side& from = sides_[into.side];
     std::vector<int> inside;
-    std::set<int> seen;
+    std::vector<bool> seen(from.surface.faces_.size(), false);
     const auto spread = [&](int face, const Place& near) {
       from.surface.each_neighbour(face, [&](int other) {
-        if (from.crosses(other, 1) || !seen.insert(other).second) return;
+        if (seen[other] || from.crosses(other, 1)) return;
+        seen[other] = true;
         const Triangle t = face_of(from, other);
-        const Place corner = look_at_point(into, t[0], near);
+        const Place corner = look_at_corner(into, other, 0, t[0], near);
         // Where crossings are unknown, a face with a corner outside may still reach inside.
         const double radius = knows_all_crossings(into) ? 0 : radius_about(t, t[0]);
         if (corner.depth >= -radius - reach_rounding_mm && may_count(into, corner, radius))
@@ -413,6 +434,7 @@ class DepthSearch {
   DepthSettings settings_;
   std::array<Side, 2> sides_;
   bool crossing_known_;
+  std::vector<CornerPlace> corner_places_;
   std::vector<Item> items_;
   std::vector<std::size_t> free_;  // slots of items_ for reuse
   std::priority_queue<Waiting> waiting_;
