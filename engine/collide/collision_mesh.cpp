@@ -8,11 +8,13 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <utility>
 
 #include "engine/collide/box_tree.h"
 #include "engine/collide/plain_query.h"
 #include "engine/collide/shells.h"
+#include "engine/collide/traversal_front.h"
 #include "engine/collide/triangle_distance.h"
 
 namespace condyle {
@@ -84,28 +86,81 @@ std::pair<ChildRange, ChildRange> opened(const ChildRange& a, const ChildRange& 
           open_b ? ChildRange{boxes_b + held_b, 0, 2} : b};
 }
 
+/// Pairs of boxes, or of triangles, at which a traversal ended.
+class Ends {
+ public:
+  /// `front`: of earlier queries of the kind, or null.
+  Ends(const Surface& a, const Surface& b, TraversalFront* front)
+      : a_(a.tree.boxes), b_(b.tree.boxes), front_(front) {}
+
+  /// Visits the roots or, where the last query was near, the ends of it that `stays` does not let
+  /// stand by a lower bound of their gap. Triangles are opened; the gap of boxes is looked at
+  /// again.
+  template <class Stays, class Visit, class Open>
+  void traverse(const fcl::Transform3d& X, const Stays& stays, const Visit& visit,
+                const Open& open) {
+    if (front_ && !front_->begin(a_, b_, X)) front_ = nullptr;
+    if (!front_ || front_->at_roots()) {
+      visit(ChildRange{a_.data(), 0, 1}, ChildRange{b_.data(), 0, 1});
+    } else {
+      for (const TraversalFront::End& end : front_->ends()) {
+        const ChildRange a = box_of(end.a, a_.data()), b = box_of(end.b, b_.data());
+        if (stays(front_->gap_mm(end)))
+          front_->keep(end);
+        else if (holds_triangle(a.held(a.from)) && holds_triangle(b.held(b.from)))
+          open(a, b);
+        else
+          visit(a, b);
+      }
+    }
+    if (front_) front_->finish();
+  }
+
+  /// `gap_mm`: a lower bound.
+  void add(const ChildRange& a, int i, const ChildRange& b, int k, double gap_mm) const {
+    if (front_) front_->add(index(a, i, a_.data()), index(b, k, b_.data()), gap_mm);
+  }
+
+ private:
+  static int index(const ChildRange& range, int k, const BoxPair* boxes) {
+    return 2 * static_cast<int>(range.boxes - boxes) + k;
+  }
+  static ChildRange box_of(int end, const BoxPair* boxes) {
+    return {boxes + end / 2, end % 2, end % 2 + 1};
+  }
+  const std::vector<BoxPair>&a_, &b_;
+  TraversalFront* front_;
+};
+
 /// Surfaces farther apart than this have one dominant direction between them; nearer surfaces (a
 /// condyle in its fossa, crowns) are close over an area.
 constexpr double facing_mm = 10;
+// Triangles that share a corner are at the same distance, to rounding; the least is above touch.
+constexpr double same_distance = 1e-12, least_mm2 = 4e-24;
 
 /// Traverses the two trees, four pairs of boxes at a time. Pairs of triangles are measured by
 /// triangle_distance, because FCL's triangle distance loses digits, and occasionally the answer,
 /// where edges are parallel. All in the coordinates of A.
 class NearestPair {
  public:
-  /// start: the pair measured first, where valid. Only distances below the bound count.
+  /// start: the pair measured first, where valid. Only distances below the bound count. front: of
+  /// earlier queries of nearest pairs, or null.
   NearestPair(const Surface& a, const Surface& b, const fcl::Transform3d& X, TrianglePair start,
-              double bound_mm2)
+              double bound_mm2, TraversalFront* front = nullptr)
       : a_(a),
         b_(b),
         boxes_a_(a.tree.boxes.data()),
         boxes_b_(b.tree.boxes.data()),
+        ends_(a, b, front),
         X_(X),
         turned_(X.linear(), X.translation(), a.tree.reach_mm + b.tree.reach_mm) {
     best.squared_mm2 = bound_mm2;
     best_mm = std::sqrt(bound_mm2);
     if (a_.has(start.a) && b_.has(start.b)) measure(start);
-    visit({boxes_a_, 0, 1}, {boxes_b_, 0, 1});
+    ends_.traverse(
+        X_, [&](double gap_mm) { return gap_mm > best_mm; },
+        [&](const auto& in_a, const auto& in_b) { visit(in_a, in_b); },
+        [&](const auto& in_a, const auto& in_b) { open(in_a, in_b); });
   }
 
   TriangleGap best;
@@ -121,7 +176,10 @@ class NearestPair {
       along = gaps_along(*a.boxes, *b.boxes, direction_, turned_.uncertain_mm);
       bool any = false;
       for (int i = a.from; i < a.to; ++i)
-        for (int k = b.from; k < b.to; ++k) any |= along[2 * i + k] < limit;
+        for (int k = b.from; k < b.to; ++k) {
+          any |= along[2 * i + k] < limit;
+          if (!(along[2 * i + k] < limit)) ends_.add(a, i, b, k, along[2 * i + k]);
+        }
       if (!any) return;
     }
     const FourFloats gaps = gap_bounds(*a.boxes, *b.boxes, turned_);
@@ -136,28 +194,42 @@ class NearestPair {
         for (; at > 0 && gaps[lane] < gaps[lanes[at - 1]]; --at) lanes[at] = lanes[at - 1];
         lanes[at] = lane;
       }
-    for (int n = 0; n < count && gaps[lanes[n]] < best_mm; ++n)
-      open(a.one(lanes[n] / 2), b.one(lanes[n] % 2));
+    for (int n = 0; n < count; ++n) {
+      const int i = lanes[n] / 2, k = lanes[n] % 2;
+      if (gaps[lanes[n]] < best_mm)
+        open(a.one(i), b.one(k));
+      else
+        ends_.add(a, i, b, k, gaps[lanes[n]]);
+    }
   }
   void open(const ChildRange& a, const ChildRange& b) {
     const int held_a = a.held(a.from), held_b = b.held(b.from);
     if (holds_triangle(held_a) && holds_triangle(held_b))
-      return measure({held_triangle(held_a), held_triangle(held_b)});
+      return ends_.add(a, a.from, b, b.from,
+                       measure({held_triangle(held_a), held_triangle(held_b)}));
     const auto [in_a, in_b] = opened(a, b, boxes_a_, boxes_b_);
     visit(in_a, in_b);
   }
-  void measure(TrianglePair pair) {
+  /// Returns a lower bound of the distance of the triangles. Of pairs at the same distance, the
+  /// answer is the first in the order of the triangles, whatever was measured before.
+  double measure(TrianglePair pair) {
     const Triangle in_a = corners(a_, pair.a), in_b = corners(b_, pair.b, X_);
-    if (gap_along(in_a, in_b) > best_mm) return;
-    const TriangleGap gap = triangle_distance(in_a, in_b, best.squared_mm2);
-    if (gap.squared_mm2 >= best.squared_mm2) return;
+    if (const double along = gap_along(in_a, in_b); along > best_mm) return along;
+    const double bound_mm2 = best.squared_mm2 * (1 + same_distance) + least_mm2;
+    const TriangleGap gap = triangle_distance(in_a, in_b, bound_mm2);
+    const double gap_mm = std::sqrt(gap.squared_mm2);
+    const bool first = std::pair(pair.a, pair.b) < std::pair(triangles.a, triangles.b);
+    if (gap.squared_mm2 > best.squared_mm2 ||
+        (gap.squared_mm2 == best.squared_mm2 && !(triangles.a >= 0 && first)))
+      return gap_mm;
     best = gap;
-    best_mm = std::sqrt(gap.squared_mm2);
+    best_mm = gap_mm;
     triangles = pair;
     const Eigen::Vector3d between = gap.q - gap.p;
-    if (between.squaredNorm() <= 0) return;
+    if (between.squaredNorm() <= 0) return gap_mm;
     across_ = between.normalized();
     direction_ = BoxDirection(across_, X_.linear(), X_.translation());
+    return gap_mm;
   }
   /// Lower bound of the gap of two triangles.
   double gap_along(const Triangle& a, const Triangle& b) const {
@@ -172,6 +244,7 @@ class NearestPair {
   const Surface& a_;
   const Surface& b_;
   const BoxPair *boxes_a_, *boxes_b_;
+  Ends ends_;
   fcl::Transform3d X_;  // of B in A
   BoxTransform turned_;
   // Direction between the nearest points found so far, from A to B: for most of the surroundings it
@@ -247,16 +320,23 @@ class PathContactTest {
 /// the coordinates of A.
 class CrossingPairs {
  public:
-  CrossingPairs(const Surface& a, const Surface& b, const fcl::Transform3d& X, ContactLimits limits)
+  /// front: of earlier queries of crossings, or null; only where no region is limited.
+  CrossingPairs(const Surface& a, const Surface& b, const fcl::Transform3d& X, ContactLimits limits,
+                TraversalFront* front)
       : a_(a),
         b_(b),
         boxes_a_(a.tree.boxes.data()),
         boxes_b_(b.tree.boxes.data()),
+        ends_(a, b, front),
         X_(X),
         turned_(X.linear(), X.translation(), a.tree.reach_mm + b.tree.reach_mm),
         total_(static_cast<std::size_t>(std::max(limits.total, 0))),
         per_region_(limits.per_region) {
-    if (total_ > 0 && per_region_ > 0) visit({boxes_a_, 0, 1}, {boxes_b_, 0, 1});
+    if (total_ == 0 || per_region_ <= 0) return;
+    ends_.traverse(
+        X_, [&](double gap_mm) { return gap_mm > 0 || found.size() >= total_; },
+        [&](const auto& in_a, const auto& in_b) { visit(in_a, in_b); },
+        [&](const auto& in_a, const auto& in_b) { open(in_a, in_b); });
   }
 
   std::vector<MeshContact> found;
@@ -265,13 +345,17 @@ class CrossingPairs {
   void visit(const ChildRange& a, const ChildRange& b) {
     const FourFloats gaps = gap_bounds(*a.boxes, *b.boxes, turned_);
     for (int i = a.from; i < a.to; ++i)
-      for (int k = b.from; k < b.to && found.size() < total_; ++k)
-        if (!(gaps[2 * i + k] > 0) && !is_full(a, i)) open(a.one(i), b.one(k));
+      for (int k = b.from; k < b.to; ++k)
+        if (found.size() < total_ && !(gaps[2 * i + k] > 0) && !is_full(a, i))
+          open(a.one(i), b.one(k));
+        else
+          ends_.add(a, i, b, k, gaps[2 * i + k]);
   }
   void open(const ChildRange& a, const ChildRange& b) {
     const int held_a = a.held(a.from), held_b = b.held(b.from);
     if (holds_triangle(held_a) && holds_triangle(held_b))
-      return test({held_triangle(held_a), held_triangle(held_b)}, region(a, a.from));
+      return ends_.add(a, a.from, b, b.from,
+                       test({held_triangle(held_a), held_triangle(held_b)}, region(a, a.from)));
     const auto [in_a, in_b] = opened(a, b, boxes_a_, boxes_b_);
     visit(in_a, in_b);
   }
@@ -283,10 +367,11 @@ class CrossingPairs {
     const int at = region(a, i);
     return at >= 0 && count_[at] >= per_region_;
   }
-  void test(TrianglePair pair, int at) {
+  /// Returns a lower bound of the distance of the triangles.
+  double test(TrianglePair pair, int at) {
     const Triangle ta = corners(a_, pair.a), tb = corners(b_, pair.b, X_);
     const TriangleCrossing crossing = triangle_crossing(ta, tb);
-    if (!crossing.crosses) return;
+    if (!crossing.crosses) return crossing.apart_mm;
     const Eigen::Vector3d na = (ta[1] - ta[0]).cross(ta[2] - ta[0]).normalized();
     const Eigen::Vector3d nb = (tb[1] - tb[0]).cross(tb[2] - tb[0]).normalized();
     const Eigen::Vector3d between = na - nb;
@@ -297,11 +382,13 @@ class CrossingPairs {
     contact.triangles = pair;
     found.push_back(contact);
     if (at >= 0) ++count_[at];
+    return 0;
   }
 
   const Surface& a_;
   const Surface& b_;
   const BoxPair *boxes_a_, *boxes_b_;
+  Ends ends_;
   fcl::Transform3d X_;  // of B in A
   BoxTransform turned_;
   std::size_t total_;
@@ -326,19 +413,41 @@ CollisionMesh::~CollisionMesh() = default;
 CollisionMesh::CollisionMesh(CollisionMesh&&) noexcept = default;
 CollisionMesh& CollisionMesh::operator=(CollisionMesh&&) noexcept = default;
 
+namespace {
+
+/// A front of the cache while a query uses it; null without a cache, or where another uses it.
+class FrontInUse {
+ public:
+  FrontInUse(PairCache* cache, TraversalFront PairCache::*front) {
+    if (!cache) return;
+    lock_ = std::unique_lock(cache->in_use, std::try_to_lock);
+    if (lock_) front_ = &(cache->*front);
+  }
+  TraversalFront* get() const { return front_; }
+
+ private:
+  std::unique_lock<std::mutex> lock_;
+  TraversalFront* front_ = nullptr;
+};
+
+}  // namespace
+
 MeshDistance distance(const CollisionMesh& a, const Pose& X_WA, const CollisionMesh& b,
-                      const Pose& X_WB, TrianglePair start) {
+                      const Pose& X_WB, TrianglePair start, PairCache* cache) {
   if (start.a < 0 || start.b < 0) start = {0, 0};
+  const FrontInUse front(cache, &PairCache::nearest);
   const NearestPair nearest(a.tree(), b.tree(), fcl_transform(X_WA.inverse() * X_WB), start,
-                            std::numeric_limits<double>::infinity());
+                            std::numeric_limits<double>::infinity(), front.get());
   return {nearest.best_mm, X_WA * nearest.best.p, X_WA * nearest.best.q, nearest.triangles};
 }
 
 std::optional<MeshDistance> distance_within(double reach_mm, const CollisionMesh& a,
                                             const Pose& X_WA, const CollisionMesh& b,
-                                            const Pose& X_WB, TrianglePair start) {
+                                            const Pose& X_WB, TrianglePair start,
+                                            PairCache* cache) {
+  const FrontInUse front(cache, &PairCache::nearest);
   const NearestPair nearest(a.tree(), b.tree(), fcl_transform(X_WA.inverse() * X_WB), start,
-                            reach_mm * reach_mm);
+                            reach_mm * reach_mm, front.get());
   if (nearest.triangles.a < 0) return std::nullopt;
   return MeshDistance{nearest.best_mm, X_WA * nearest.best.p, X_WA * nearest.best.q,
                       nearest.triangles};
@@ -371,8 +480,10 @@ bool clear_on_path(const CollisionMesh& stays, const Pose& X_WS, const Collision
 }
 
 std::vector<MeshContact> contacts(const CollisionMesh& a, const Pose& X_WA, const CollisionMesh& b,
-                                  const Pose& X_WB, ContactLimits limits) {
-  CrossingPairs crossing(a.tree(), b.tree(), fcl_transform(X_WA.inverse() * X_WB), limits);
+                                  const Pose& X_WB, ContactLimits limits, PairCache* cache) {
+  const FrontInUse front(limits.per_region < limits.total ? nullptr : cache, &PairCache::crossing);
+  CrossingPairs crossing(a.tree(), b.tree(), fcl_transform(X_WA.inverse() * X_WB), limits,
+                         front.get());
   for (auto& contact : crossing.found) {
     contact.point = X_WA * contact.point;
     contact.normal = X_WA.R * contact.normal;

@@ -12,6 +12,8 @@
 
 namespace condyle {
 
+struct PairCache;
+
 /// A triangle of each surface.
 struct TrianglePair {
   int a = -1, b = -1;
@@ -57,14 +59,16 @@ class CollisionMesh {
 };
 
 /// Minimum distance, to rounding (about 1e-13 mm). `start`: the triangles of an earlier answer; any
-/// valid pair gives the same distance, a near one faster.
+/// valid pair gives the same answer, a near one faster. `cache`: of these two surfaces; it makes a
+/// query near the pose of the last one faster, and may be null.
 MeshDistance distance(const CollisionMesh& a, const Pose& X_WA, const CollisionMesh& b,
-                      const Pose& X_WB, TrianglePair start = {});
+                      const Pose& X_WB, TrianglePair start = {}, PairCache* cache = nullptr);
 
 /// The distance where it is below `reach_mm`; nothing otherwise, which is decided much faster.
 std::optional<MeshDistance> distance_within(double reach_mm, const CollisionMesh& a,
                                             const Pose& X_WA, const CollisionMesh& b,
-                                            const Pose& X_WB, TrianglePair start = {});
+                                            const Pose& X_WB, TrianglePair start = {},
+                                            PairCache* cache = nullptr);
 
 /// Distance of two triangles of the surfaces; infinite where they have no such triangles.
 double triangle_gap(const CollisionMesh& a, const Pose& X_WA, const CollisionMesh& b,
@@ -106,9 +110,11 @@ struct ContactLimits {
   int per_region = 4096;  // in each of up to 64 regions of the surface of A
 };
 
-/// Pairs of crossing triangles, in the tree's order, up to the limits.
+/// Pairs of crossing triangles, in the tree's order, up to the limits. `cache`: see distance; of no
+/// use where regions have a limit of their own.
 std::vector<MeshContact> contacts(const CollisionMesh& a, const Pose& X_WA, const CollisionMesh& b,
-                                  const Pose& X_WB, ContactLimits limits = {});
+                                  const Pose& X_WB, ContactLimits limits = {},
+                                  PairCache* cache = nullptr);
 
 /// Length of the shortest translation that separates the two triangles of a contact, mm.
 double overlap(const CollisionMesh& a, const Pose& X_WA, const CollisionMesh& b, const Pose& X_WB,

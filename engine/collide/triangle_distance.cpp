@@ -58,11 +58,16 @@ struct Prepared {
   }
 };
 
-/// All of `t` lies on one side of the plane of `plane`, farther away than the bound.
-bool beyond_plane(const Prepared& plane, const std::array<double, 3>& height, double bound_mm2) {
+/// Least height of a triangle that lies on one side of the plane; 0 where it does not.
+double height_over_plane(const std::array<double, 3>& height) {
   const double least = std::min({height[0], height[1], height[2]});
   const double most = std::max({height[0], height[1], height[2]});
-  const double gap = least > 0 ? least : (most < 0 ? -most : 0);
+  return least > 0 ? least : (most < 0 ? -most : 0);
+}
+
+/// All of the triangle lies on one side of the plane of `plane`, farther away than the bound.
+bool beyond_plane(const Prepared& plane, const std::array<double, 3>& height, double bound_mm2) {
+  const double gap = height_over_plane(height);
   return gap * gap >= bound_mm2 * plane.normal2 && gap > 0;
 }
 
@@ -159,9 +164,14 @@ TriangleCrossing triangle_crossing(const Triangle& ta, const Triangle& tb) {
   const Prepared a(ta), b(tb);
   TriangleCrossing crossing;
   const auto b_over_a = heights(a, tb);
-  if (beyond_plane(a, b_over_a, 0)) return crossing;
+  const auto apart = [&](const Prepared& plane, const std::array<double, 3>& height) {
+    const double gap = height_over_plane(height);
+    if (gap > 0) crossing.apart_mm = gap / std::sqrt(plane.normal2);
+    return gap > 0;
+  };
+  if (apart(a, b_over_a)) return crossing;
   const auto a_over_b = heights(b, ta);
-  if (beyond_plane(b, a_over_b, 0)) return crossing;
+  if (apart(b, a_over_b)) return crossing;
   std::array<Vector, 6> points;
   int count = pierce(b, b_over_a, a, points, 0);
   count = pierce(a, a_over_b, b, points, count);

@@ -25,6 +25,7 @@ Eigen::Vector3d nearest_point(const Eigen::Vector3d& p, const Triangle& t);
 /// Intersection of two triangles: the two ends of the common segment.
 struct TriangleCrossing {
   bool crosses = false;
+  double apart_mm = 0;  // lower bound of their distance
   Eigen::Vector3d from = Eigen::Vector3d::Zero(), to = Eigen::Vector3d::Zero();
 };
 TriangleCrossing triangle_crossing(const Triangle& a, const Triangle& b);

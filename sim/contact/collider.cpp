@@ -54,7 +54,8 @@ std::vector<MeshContact> early_crossings(const ColliderPair& pair, const Pose& X
   if (pair.a->solid.face_count() + pair.b->solid.face_count() <= many_faces ||
       !(triangle_gap(a, X_CA, b, X_CB, start) < probably_crossing_mm))
     return {};
-  return contacts(a, X_CA, b, X_CB, options.need_depth ? light_contact : any_crossing);
+  return contacts(a, X_CA, b, X_CB, options.need_depth ? light_contact : any_crossing,
+                  pair.cache.get());
 }
 
 }  // namespace
@@ -108,9 +109,10 @@ PairContact query_pair(const ColliderPair& pair, const Pose& X_CA, const Pose& X
     out.triangle_b = first.triangles.b;
   } else {
     const double reach_mm = options.need_distance ? options.far_mm : touching_reach_mm;
-    const auto found = reach_mm < nowhere_mm
-                           ? distance_within(reach_mm, a.surface, X_CA, b.surface, X_CB, start)
-                           : distance(a.surface, X_CA, b.surface, X_CB, start);
+    const auto found =
+        reach_mm < nowhere_mm
+            ? distance_within(reach_mm, a.surface, X_CA, b.surface, X_CB, start, pair.cache.get())
+            : distance(a.surface, X_CA, b.surface, X_CB, start, pair.cache.get());
     enclosed = !(found && found->distance_mm == 0) && balls_apart <= 0 &&
                one_encloses_other(a.solid, X_CA, b.solid, X_CB);
     if (!found && !enclosed) return far_apart(pair, std::max(reach_mm, balls_apart));
@@ -133,8 +135,9 @@ PairContact query_pair(const ColliderPair& pair, const Pose& X_CA, const Pose& X
   CrossingFaces crossing_faces;
   bool is_light = crossing && a.solid.face_count() + b.solid.face_count() > many_faces;
   if (is_light) {
-    light = early.empty() ? contacts(a.surface, X_CA, b.surface, X_CB, light_contact)
-                          : std::move(early);
+    light = early.empty()
+                ? contacts(a.surface, X_CA, b.surface, X_CB, light_contact, pair.cache.get())
+                : std::move(early);
     is_light = light.size() < static_cast<std::size_t>(light_contact.total);
     for (const auto& contact : light) {
       crossing_faces.a.push_back(contact.triangles.a);

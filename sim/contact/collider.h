@@ -9,6 +9,7 @@
 
 #include "engine/collide/collision_mesh.h"
 #include "engine/collide/solid.h"
+#include "engine/collide/traversal_front.h"
 #include "sim/frame/contact_set.h"
 
 namespace condyle {
@@ -56,6 +57,7 @@ struct ColliderPair {
   bool obstructs = true;
   double min_distance_mm = 0;  // distance that a guided pair keeps: its gap, or less where it was
                                // less at rest
+  std::shared_ptr<PairCache> cache = std::make_shared<PairCache>();  // of the two surfaces
 };
 
 /// Surfaces deeper in each other than this at rest are held there by their depth as well as by
