@@ -240,16 +240,13 @@ Motion motion_of(const MotionOptions& options, const Scene& scene, int threads) 
   if (options.weakness.empty()) return motion;
   if (!scene.tissue)
     throw InputError("--weakness " + options.weakness.front() + ": the patient has no face");
-  const std::vector<double> strengths =
+  const FaceStrengths strengths =
       muscle_strengths(options.weakness, face_muscles_of(*scene.tissue));
   if (!motion.expression)
     throw InputError("--weakness " + options.weakness.front() +
                      ": needs an expression, by --expression or in the words of --motion");
   motion.expression = [healthy = motion.expression, strengths](double time_s) {
-    std::vector<double> excitation = healthy(time_s);
-    for (std::size_t m = 0; m < excitation.size() && m < strengths.size(); ++m)
-      excitation[m] *= strengths[m];
-    return excitation;
+    return weakened(healthy(time_s), strengths);
   };
   return motion;
 }

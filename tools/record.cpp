@@ -64,13 +64,25 @@ FrameTimes frame_times(const RecordOptions& options, double duration_s) {
   return {options.frames > 0 ? options.frames : static_cast<int>(rounded), duration_s};
 }
 
-/// The report with the metadata of its pictures. life: a note about it; empty for none.
+/// Notes on what is for looks alone; empty: none.
+struct LookNotes {
+  std::string life, lids;
+};
+
+LookNotes look_notes(const std::optional<PicturePlan>& plan, const Case& patient, bool lids_close) {
+  if (!plan) return {};
+  return {.life = plan->settings.life ? life_note(patient.parts, plan->settings) : "",
+          .lids = lids_close ? lids_note(patient.parts) : ""};
+}
+
+/// The report with the metadata of its pictures.
 std::string with_pictures(const std::string& report, const RenderMetadata& facts,
-                          const std::string& life) {
+                          const LookNotes& notes) {
   auto json = nlohmann::ordered_json::parse(report);
   json["pictures"] = {
       {"driver", facts.driver}, {"samples_asked", facts.samples_asked}, {"samples", facts.samples}};
-  if (!life.empty()) json["pictures"]["life"] = life;
+  if (!notes.life.empty()) json["pictures"]["life"] = notes.life;
+  if (!notes.lids.empty()) json["pictures"]["lids"] = notes.lids;
   return json.dump(2) + "\n";
 }
 
@@ -223,8 +235,10 @@ int run_record(const RecordOptions& options, const CommonOptions& common) {
                                                         options.motion.respect_contact)});
   std::optional<Interruption> interruption;
   if (options.pictures) interruption.emplace(pictures_stay(options));
+  bool lids_close = false;
   for (int i = 0; i < times.count; ++i) {
     FrameState frame = playback.at(times[i]);
+    lids_close |= frame.lids.any();
     const auto done = [&](int number, const FrameState& drawn) {
       trace.add(number, drawn);
       report.add(drawn);
@@ -244,21 +258,19 @@ int run_record(const RecordOptions& options, const CommonOptions& common) {
   const ExpressionMeasures expression = report.expression();
   if (!expression.findings.empty())
     json = with_expression(json, options.out, expression, before ? &*before : nullptr);
-  const std::string life =
-      plan && plan->settings.life ? life_note(scene.patient.parts, plan->settings) : "";
-  if (pictures) json = with_pictures(json, pictures->facts(), life);
+  const LookNotes looks_alone = look_notes(plan, scene.patient, lids_close);
+  if (pictures) json = with_pictures(json, pictures->facts(), looks_alone);
   write_file(options.out / "report.json", json);
   if (motion.muscles) write_file(options.out / "excitations.csv", excitations_csv(motion));
-  if (options.plots) {
+  if (options.plots)
     for (const auto& plot : motion_plots(report.series()))
       write_file(options.out / (plot.name + ".svg"), panels_svg(plot.panels));
-  }
   if (pictures) pictures->finish();
   if (common.json) fmt::print("{}", json);
   if (common.prints_summary()) {
     for (const auto& note : motion.notes) fmt::print(stderr, "note: {}\n", note);
-    if (!life.empty()) fmt::print(stderr, "note: {}\n", life);
-    if (!not_before.empty()) fmt::print(stderr, "note: {}\n", not_before);
+    for (const std::string& note : {looks_alone.life, looks_alone.lids, not_before})
+      if (!note.empty()) fmt::print(stderr, "note: {}\n", note);
     if (const auto lacks = pictures ? pictures->facts().shortfall() : ""; !lacks.empty())
       fmt::print(stderr, "note: {}; --edges fxaa or --supersample 2 smooth them\n", lacks);
     fmt::print(stderr, "{}{}", report.text(),

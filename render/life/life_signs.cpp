@@ -74,7 +74,8 @@ LifeSigns life_signs(double time_s, const Pose& X_CM) {
   const Eigen::AngleAxisd turn(X_CM.R);
   const Eigen::Vector2d look = gaze(time_s);
   const double turns = 2 * std::numbers::pi * time_s;
-  return {.closure = lid_closure(time_s),
+  const double closure = lid_closure(time_s);
+  return {.lids = {closure, closure},
           .gaze_left = look.x(),
           .gaze_up = look.y(),
           .pupil = 1 + 0.05 * std::sin(0.13 * turns) + 0.03 * std::sin(0.37 * turns),

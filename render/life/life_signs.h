@@ -5,6 +5,7 @@
 
 #include "engine/math/pose.h"
 #include "render/camera/camera.h"
+#include "sim/frame/face_excitation.h"
 
 namespace condyle {
 
@@ -22,15 +23,16 @@ struct Life {
 Life life_about(const Eigen::Vector3d& condyles,
                 const std::optional<Eigen::Vector3d>& nose_tip = std::nullopt);
 
-/// What a face does by itself. Values between published extremes; the choice at each time is
-/// pseudo-random.
+/// What a face does by itself, and what an expression does to its lids. Values between published
+/// extremes; the choice at each time is pseudo-random.
 struct LifeSigns {
-  double closure = 0;    // of the upper lids by a blink: 0 open, 1 closed
+  LidClosure lids = {};  // by a blink or an expression
   double gaze_left = 0;  // to the patient's left, rad
   double gaze_up = 0;    // rad
   double pupil = 1;      // radius over that at rest
   double breath = 0;     // 0 after expiration, 1 after inspiration
   double extension = 0;  // of the head with the jaw's opening, rad
+  bool alive = true;     // false: lids alone move, from where the face has them
   bool operator==(const LifeSigns&) const = default;
 };
 

@@ -127,6 +127,7 @@ void LivingEyes::grow_from(std::span<const UpperLid> lids) {
 }
 
 Vector3f LivingEyes::gaze_of(std::size_t eyeball, const LifeSigns& signs) const {
+  if (!signs.alive) return ahead;
   Vector3d middle = Vector3d::Zero();
   for (const Eyeball& each : eyeballs_)
     middle += each.centre.cast<double>() / static_cast<double>(eyeballs_.size());
@@ -139,7 +140,7 @@ Vector3f LivingEyes::gaze_of(std::size_t eyeball, const LifeSigns& signs) const 
 
 void LivingEyes::move(const LifeSigns& signs, std::span<const UpperLid> lids,
                       std::span<Vector3f> places, std::span<Vector3f> normals) const {
-  for (std::size_t e = 0; e < eyeballs_.size(); ++e) {
+  for (std::size_t e = 0; signs.alive && e < eyeballs_.size(); ++e) {
     const Eyeball& ball = eyeballs_[e];
     const Eigen::Matrix3f R =
         Eigen::Quaternionf::FromTwoVectors(ahead, gaze_of(e, signs)).toRotationMatrix();
@@ -163,7 +164,7 @@ void LivingEyes::move(const LifeSigns& signs, std::span<const UpperLid> lids,
   for (const Lash& lash : lashes_) {
     if (lash.lid < 0) continue;
     const UpperLid& lid = lids[static_cast<std::size_t>(lash.lid)];
-    const Eigen::Matrix3f R = lid.turn_at(lash.root, lid.lowered(signs.closure, signs.gaze_up));
+    const Eigen::Matrix3f R = lid.turn_at(lash.root, lid.lowered(signs));
     for (const int v : lash.vertices) {
       Vector3f& p = places[static_cast<std::size_t>(v)];
       p = lid.eyeball().centre + R * (p - lid.eyeball().centre);

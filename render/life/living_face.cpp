@@ -78,14 +78,21 @@ void LivingFace::find_nostrils(std::span<const Vector3f> rest, const Vector3f& t
 void LivingFace::move_lids(const LifeSigns& signs, std::span<Vector3f> places) const {
   for (std::size_t i = 0; i < lids_.size(); ++i) {
     const auto [part, eyeball] = lid_eyes_[i];
-    lids_[i].move(lids_[i].lowered(signs.closure, signs.gaze_up),
-                  eyes_[part]->gaze_of(eyeball, signs), places);
+    lids_[i].move(lids_[i].lowered(signs), eyes_[part]->gaze_of(eyeball, signs), places);
   }
 }
 
 std::vector<SkinFolds::Shade> LivingFace::move_face(const Life& life, const LifeSigns& signs,
                                                     std::span<Vector3f> places) const {
   move_lids(signs, places);
+  if (signs.alive) breathe(life, signs, places);
+  std::vector<SkinFolds::Shade> shades;
+  for (const UpperLid& lid : lids_) lid.shade(lid.lowered(signs), shades);
+  return shades;
+}
+
+void LivingFace::breathe(const Life& life, const LifeSigns& signs,
+                         std::span<Vector3f> places) const {
   const auto breath = static_cast<float>(signs.breath);
   for (const Member& member : neck_) {
     Vector3f& p = places[static_cast<std::size_t>(member.vertex)];
@@ -94,9 +101,6 @@ std::vector<SkinFolds::Shade> LivingFace::move_face(const Life& life, const Life
   }
   for (const Member& member : nostrils_)
     places[static_cast<std::size_t>(member.vertex)] += breath * member.breathes;
-  std::vector<SkinFolds::Shade> shades;
-  for (const UpperLid& lid : lids_) lid.shade(lid.lowered(signs.closure, signs.gaze_up), shades);
-  return shades;
 }
 
 void LivingFace::move_eyes(std::size_t part, const LifeSigns& signs, std::span<Vector3f> places,
@@ -104,15 +108,18 @@ void LivingFace::move_eyes(std::size_t part, const LifeSigns& signs, std::span<V
   if (has_eyes(part)) eyes_[part]->move(signs, lids_, places, normals);
 }
 
+std::string LivingFace::lids_shortfall() const {
+  if (eyeballs_ == 0) return "no eyeballs were found";
+  return lids_.empty() ? "no open lids were found" : "";
+}
+
 std::string LivingFace::shortfall() const {
-  std::string lacks;
+  std::string lacks = lids_shortfall();
   const auto add = [&](const char* text) {
     lacks += (lacks.empty() ? "" : "; ") + std::string(text);
   };
-  if (eyeballs_ == 0)
-    add("no eyeballs were found: eyes and lids do not move");
-  else if (lids_.empty())
-    add("no open lids were found: the eyes do not blink");
+  if (!lacks.empty())
+    lacks += eyeballs_ == 0 ? ": eyes and lids do not move" : ": the eyes do not blink";
   if (neck_.empty()) add("no neck was found: the whole head turns, and the neck does not breathe");
   if (nostrils_.empty()) add("no landmark pronasale on the face: the nostrils do not breathe");
   return lacks;

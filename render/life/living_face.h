@@ -35,6 +35,8 @@ class LivingFace {
 
   /// What of it the patient lacks, as text; empty for nothing.
   std::string shortfall() const;
+  /// Why lids do not move, as text; empty where they do.
+  std::string lids_shortfall() const;
 
  private:
   struct Member {
@@ -42,6 +44,7 @@ class LivingFace {
     float still;               // 1: it does not follow the head's extension
     Eigen::Vector3f breathes;  // displacement after inspiration, mm
   };
+  void breathe(const Life& life, const LifeSigns& signs, std::span<Eigen::Vector3f> places) const;
   void find_neck(std::span<const Part> parts, std::span<const Eigen::Vector3f> rest);
   void find_nostrils(std::span<const Eigen::Vector3f> rest, const Eigen::Vector3f& nose_tip);
 

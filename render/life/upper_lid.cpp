@@ -297,8 +297,9 @@ std::vector<float> UpperLid::widening(std::span<const Vector3f> places) const {
   return wider;
 }
 
-double UpperLid::lowered(double closure, double gaze_up) const {
-  const double open = staring_ - lid_per_gaze * gaze_up / widest_;
+double UpperLid::lowered(const LifeSigns& signs) const {
+  const double closure = eyeball_.centre.x() > 0 ? signs.lids.left : signs.lids.right;
+  const double open = signs.alive ? staring_ - lid_per_gaze * signs.gaze_up / widest_ : 0;
   return std::clamp(open + closure * (1 - open), highest, 1.0);
 }
 

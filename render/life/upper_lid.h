@@ -7,6 +7,7 @@
 
 #include "engine/mesh/tri_mesh.h"
 #include "render/face/skin_folds.h"
+#include "render/life/life_signs.h"
 
 namespace condyle {
 
@@ -36,9 +37,9 @@ class UpperLid {
 
   const Eyeball& eyeball() const { return eyeball_; }
 
-  /// Fraction of the way to the lower lid for a closure by a blink, and a gaze upwards, rad, that
-  /// the lid follows. A lid that shows all of the iris is lowered a little: the eye would stare.
-  double lowered(double closure, double gaze_up) const;
+  /// Fraction of the way to the lower lid by the closure of this side. A living lid follows the
+  /// gaze, and is lowered a little where it shows all of the iris: the eye would stare.
+  double lowered(const LifeSigns& signs) const;
 
   /// Moves the lid's vertices by a fraction of the way to the lower lid, from where the face's
   /// expression has both lids; none enters the eyeball. gaze: unit.

@@ -50,8 +50,11 @@ std::uint64_t motion_hash(const Motion& motion, std::span<const double> times, d
     hash = hash_bytes(pose.R.coeffs().data(), 4 * sizeof(double), hash);
     hash = hash_bytes(pose.t.data(), 3 * sizeof(double), hash);
     if (!motion.expression) return;
-    const std::vector<double> excitation = motion.expression(time_s);
-    hash = hash_bytes(excitation.data(), excitation.size() * sizeof(double), hash);
+    const auto& [muscles, lids] = motion.expression(time_s);
+    hash = hash_bytes(muscles.data(), muscles.size() * sizeof(double), hash);
+    if (!lids.any()) return;
+    const double closed[] = {lids.left, lids.right};
+    hash = hash_bytes(closed, sizeof closed, hash);
   };
   for (int i = 0; i * step_s <= motion.duration_s; ++i) add(i * step_s);
   for (const double time_s : times) add(time_s);

@@ -49,13 +49,22 @@ std::string life_note(std::span<const Part> parts, const PictureSettings& settin
          (lacks.empty() ? "" : "; " + lacks);
 }
 
+std::string lids_note(std::span<const Part> parts) {
+  const Part* face = face_among(parts);
+  if (!face) return {};
+  const TriMesh& mesh = face->mesh;
+  const std::string lacks =
+      LivingFace(parts, float_positions(mesh), mesh.triangles, std::nullopt).lids_shortfall();
+  return lacks.empty() ? "" : "expressions do not close the lids: " + lacks;
+}
+
 void FaceShape::place(std::vector<Eigen::Vector3f> places) {
   places_ = std::move(places);
   sent_.reset();
 }
 
 void FaceShape::send(std::span<const Part> parts, std::span<Drawable> drawables,
-                     const PictureSettings& settings, double time_s, const Pose& X_CM) {
+                     const PictureSettings& settings, const FaceMoment& moment) {
   const auto face = std::find_if(drawables.begin(), drawables.end(), [](const Drawable& drawable) {
     return drawable.part->role == Role::face;
   });
@@ -63,41 +72,53 @@ void FaceShape::send(std::span<const Part> parts, std::span<Drawable> drawables,
   Look look{.folds = settings.folds};
   if (shows_life(parts, settings)) {
     look.life = settings.life;
-    look.signs = life_signs(time_s, X_CM);
+    look.signs = life_signs(moment.time_s, moment.X_CM);
+    look.signs->lids = wider_closed(look.signs->lids, moment.lids);
+  } else if (moment.lids.any()) {
+    look.signs = LifeSigns{.lids = moment.lids, .alive = false};
   }
-  if (sent_ ? *sent_ == look : places_.empty() && !look.life) return;
+  if (sent_ ? *sent_ == look : places_.empty() && !look.signs) return;
   const TriMesh& rest = face->part->mesh;
   Drawable::FaceLook drawn{.folded = look.folds};
-  if (look.life) {
-    if (!living_ || nose_tip_ != look.life->nose_tip) {
-      nose_tip_ = look.life->nose_tip;
+  if (look.signs) {
+    if (!living_ || (look.life && nose_tip_ != look.life->nose_tip)) {
+      nose_tip_ = look.life ? look.life->nose_tip : std::nullopt;
       living_.emplace(parts, float_positions(rest), face->triangles(), nose_tip_);
     }
     drawn.alive = [&](std::span<Eigen::Vector3f> places) {
-      return living_->move_face(*look.life, look.signs, places);
+      return living_->move_face(look.life.value_or(Life{}), *look.signs, places);
     };
     // The skin of a closed lid is unfolded, not drawn out to streaks.
     drawn.relief = [&](std::span<Eigen::Vector3f> places) {
-      living_->move_lids(look.signs, places);
+      living_->move_lids(*look.signs, places);
     };
   }
   face->move_face(places_.empty() ? float_positions(rest) : places_, drawn, normals_);
-  send_eyes(drawables, look.life ? &look.signs : nullptr);
+  send_eyes(drawables, look.signs ? &*look.signs : nullptr);
   sent_ = look;
 }
 
 /// signs: null at rest.
 void FaceShape::send_eyes(std::span<Drawable> drawables, const LifeSigns* signs) {
   if (!signs && !eyes_moved_) return;
+  ++eyes_number_;
   for (std::size_t i = 0; i < drawables.size(); ++i) {
     if (!living_->has_eyes(i)) continue;
     const TriMesh& mesh = drawables[i].part->mesh;
-    std::vector<Eigen::Vector3f> places = float_positions(mesh), normals;
+    auto& [places, normals] = eyes_[i];
+    places = float_positions(mesh);
     vertex_normals(places, mesh.triangles, normals);
     if (signs) living_->move_eyes(i, *signs, places, normals);
     drawables[i].mesh.send_shape(places, normals);
   }
   eyes_moved_ = signs != nullptr;
+}
+
+void FaceShape::send_eyes_again(std::size_t drawable, GpuMesh& mesh, long& sent) const {
+  const auto shape = eyes_.find(drawable);
+  if (sent == eyes_number_ || shape == eyes_.end()) return;
+  mesh.send_shape(shape->second.places, shape->second.normals);
+  sent = eyes_number_;
 }
 
 }  // namespace condyle

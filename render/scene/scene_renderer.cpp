@@ -65,6 +65,7 @@ struct SceneRenderer::State {
   // belong to the skin.
   struct PartedEyes {
     std::optional<Drawable> balls, lashes;
+    long sent = 0;  // shape of the lashes
   };
   std::map<std::size_t, PartedEyes> parted_eyes;
   // For cranial drawables by number, once the skin was opaque: without slight protrusions from it;
@@ -81,6 +82,7 @@ struct SceneRenderer::State {
   Eigen::AlignedBox3f reached;  // `box` and the present boxes of other bodies
   bool face_moved = false;
   double time_s = 0;
+  LidClosure lids;
   FaceShape face_shape;
   std::vector<Eigen::Vector3f> contact_points;
   PictureTarget target;
@@ -180,7 +182,7 @@ void SceneRenderer::State::part_lashes_from(std::vector<DrawItem>& items) {
     }
     const auto number = static_cast<std::size_t>(item.drawable - drawables.data());
     auto [eyes, fresh] = parted_eyes.try_emplace(number);
-    auto& [balls, lashes] = eyes->second;
+    auto& [balls, lashes, sent] = eyes->second;
     if (fresh) {
       const EyePieces pieces = part_lashes(item.drawable->part->mesh);
       if (!pieces.eyes.empty()) balls.emplace(piece_of(*item.drawable, pieces.eyes));
@@ -192,6 +194,7 @@ void SceneRenderer::State::part_lashes_from(std::vector<DrawItem>& items) {
     }
     if (balls) all.push_back(item), all.back().drawable = &*balls;
     if (!face) continue;
+    face_shape.send_eyes_again(number, lashes->mesh, sent);
     DrawItem strands = item;
     strands.drawable = &*lashes;
     strands.opacity = std::min(item.opacity, face->opacity);
@@ -350,6 +353,7 @@ std::pair<Eigen::Vector3d, Eigen::Vector3d> SceneRenderer::bounds() const {
 void SceneRenderer::update(const FrameState& frame) {
   auto& s = *state_;
   s.time_s = frame.time_s;
+  s.lids = frame.lids;
   s.place(frame.poses);
   if (const Drawable* face = s.first_face()) {
     const auto& rest = face->part->mesh.vertices;
@@ -415,7 +419,7 @@ void SceneRenderer::set_body(const std::string& name, const FibreBody& body) {
 
 DrawnBox SceneRenderer::drawn_box(const Camera& camera, const PictureSettings& settings) const {
   auto& s = *state_;
-  s.face_shape.send(s.parts, s.present(), settings, s.time_s, s.X_CM);
+  s.face_shape.send(s.parts, s.present(), settings, {s.time_s, s.X_CM, s.lids});
   const auto items = s.items(settings);
   const auto view = s.view(camera, settings, items);
   PictureBounds bounds(settings.width, settings.height, view.view_projection);
@@ -433,7 +437,7 @@ DrawnBox SceneRenderer::drawn_box(const Camera& camera, const PictureSettings& s
 void SceneRenderer::draw(const Camera& camera, const PictureSettings& settings,
                          const std::optional<DrawnBox>& within) {
   auto& s = *state_;
-  s.face_shape.send(s.parts, s.present(), settings, s.time_s, s.X_CM);
+  s.face_shape.send(s.parts, s.present(), settings, {s.time_s, s.X_CM, s.lids});
   GLint target = 0;
   glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &target);
   const auto items = s.items(settings);

@@ -32,7 +32,7 @@ Motion seen_motion(const ViewRecording& subject) {
     motion.expression = [moved = motion.expression,
                          by_sliders = excitation_of(subject.view.expression,
                                                     face_muscles_of(*tissue))](double time_s) {
-      return added_excitations(moved ? moved(time_s) : std::vector<double>{}, by_sliders);
+      return added_excitations(moved ? moved(time_s) : FaceExcitation{}, by_sliders);
     };
   if (!subject.held_jaw) return motion;
   motion.target = [pose = *subject.held_jaw](double) { return pose; };
@@ -87,7 +87,7 @@ std::uint64_t shown_hash(const ViewRecording& subject, const PicturePlan& plan) 
                     plan.map,
                     plan.wipe.value_or(-1)};
   if (const auto& kept = plan.before)
-    shown["kept"] = {kept->state_hash,
+    shown["kept"] = {kept->state_hash, kept->lids.left, kept->lids.right,
                      pose(kept->poses[subject.patient->scene.patient.jaw.lower_arch])};
   if (const auto& operation = plan.operation) {
     for (const RemovedPart& removed : operation->removed)

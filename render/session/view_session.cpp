@@ -9,6 +9,7 @@
 
 #include "engine/core/error.h"
 #include "render/recording/distance_drawing.h"
+#include "render/scene/face_shape.h"
 #include "render/session/view_overlays.h"
 #include "sim/frame/part_names.h"
 #include "sim/motion/motion.h"
@@ -277,12 +278,18 @@ WindowScene ViewSession::scene_of_patient() const {
   return scene;
 }
 
-/// A sentence on muscles that the sliders of the face excite and the patient lacks; empty: none.
-std::string ViewSession::lacking_muscles() const {
+/// A sentence on what the sliders of the face ask for and the patient lacks; empty: nothing.
+std::string ViewSession::lacking_for_face() {
   const auto& expression = state_.front_end.view().expression;
   if (expression.empty() || state_.scene.expressions.empty() || !state_.patient->scene.tissue)
     return {};
-  return missing_kinds(expression, face_muscles_of(*state_.patient->scene.tissue));
+  const auto& muscles = face_muscles_of(*state_.patient->scene.tissue);
+  std::string lacking = missing_kinds(expression, muscles);
+  if (!excitation_of(expression, muscles).lids.any()) return lacking;
+  if (lids_note_.of.lock() != state_.patient)
+    lids_note_ = {state_.patient, lids_note(state_.patient->scene.patient.parts)};
+  if (!lacking.empty() && !lids_note_.text.empty()) lacking += "; ";
+  return lacking + lids_note_.text;
 }
 
 /// Sentences on expression, motion, soft tissue, contact and patient: what changed last comes
@@ -294,9 +301,9 @@ std::vector<std::string> ViewSession::notes() const {
     notes.insert(notes.end(), more.begin(), more.end());
   };
   if (state_.motion) add(state_.motion->motion.notes);
-  if (!lacking_muscles_.empty() &&
-      std::find(notes.begin(), notes.end(), lacking_muscles_) == notes.end())
-    notes.insert(notes.begin(), lacking_muscles_);
+  if (!lacking_for_face_.empty() &&
+      std::find(notes.begin(), notes.end(), lacking_for_face_) == notes.end())
+    notes.insert(notes.begin(), lacking_for_face_);
   // As on the terminal, those on the mesh of the built-in patient's tissue are left out.
   if (scene.tissue && !std::holds_alternative<BuiltInSource>(state_.source))
     for (const std::string& note : summary(*scene.tissue).notes)
@@ -310,9 +317,9 @@ std::vector<std::string> ViewSession::notes() const {
 /// The notes after a slider of the face was moved.
 void ViewSession::follow_expression() {
   if (!state_.patient) return;
-  std::string lacking = lacking_muscles();
-  if (lacking == lacking_muscles_) return;
-  lacking_muscles_ = std::move(lacking);
+  std::string lacking = lacking_for_face();
+  if (lacking == lacking_for_face_) return;
+  lacking_for_face_ = std::move(lacking);
   state_.scene.notes = notes();
   state_.show_changes();
 }
@@ -320,7 +327,7 @@ void ViewSession::follow_expression() {
 void ViewSession::show_scene() {
   WindowScene& shown = state_.scene;
   shown.recent = recent_.list();
-  lacking_muscles_ = lacking_muscles();
+  lacking_for_face_ = lacking_for_face();
   shown.motion = asked_;
   if (state_.motion) {
     const Motion& motion = state_.motion->motion;

@@ -89,7 +89,7 @@ class ViewSession {
   WindowScene scene_of_patient() const;
   void use_clinical_axes(std::vector<MovableBody>& bodies) const;
   void show_scene();  // again, after changes
-  std::string lacking_muscles() const;
+  std::string lacking_for_face();
   std::vector<std::string> notes() const;
   void follow_expression();
   void show_progress();
@@ -115,7 +115,12 @@ class ViewSession {
   CtImport ct_;
   PlanSession plan_;
   Job<std::shared_ptr<const SessionMotion>> moving_;
-  std::string lacking_muscles_;      // as noted of the sliders of the face
+  std::string lacking_for_face_;  // as noted of the sliders of the face
+  struct LidsNote {
+    std::weak_ptr<const SessionPatient> of;
+    std::string text;
+  };
+  LidsNote lids_note_;               // from the first slider that closes lids on
   bool motion_lifts_brows_ = false;  // the present motion, see TissueSettings::upper_face
   std::shared_ptr<const SessionPatient> face_asked_for_;  // when the upper face was added
   Job<bool> readying_;                                    // bones to slide

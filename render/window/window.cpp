@@ -199,7 +199,7 @@ void Window::show(FrameState frame, const LoopStatistics& loop, MapValues values
   State& s = *state_;
   const FrameState* before = s.frame();
   const bool same = before && before->time_s == frame.time_s &&
-                    before->state_hash == frame.state_hash &&
+                    before->state_hash == frame.state_hash && before->lids == frame.lids &&
                     before->face.size() == frame.face.size();
   if (s.loop.message != loop.message) s.pacing.frames_due = std::max(s.pacing.frames_due, 1);
   s.loop = loop;

@@ -6,8 +6,8 @@ namespace condyle {
 
 // Visits every field of a frame's state once, in a fixed order: hashing, writing and reading a
 // frame are visitors. A visitor takes a plain value, or a list of plain values, of numbers and
-// Eigen vectors. Frame is FrameState or const FrameState, and so on. Measured times and the hash
-// are excluded.
+// Eigen vectors. Frame is FrameState or const FrameState, and so on. Measured times, the lids and
+// the hash are excluded.
 
 template <class Visitor, class P>
 void visit_pose(P& pose, Visitor&& visit) {

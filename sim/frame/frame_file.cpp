@@ -15,7 +15,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little);
 constexpr std::string_view magic = "CONDYLEF";
-constexpr std::uint32_t frame_version = 2;
+constexpr std::uint32_t frame_version = 3;
 constexpr std::size_t max_frame_bytes = std::size_t{1} << 30;
 
 class Writer {
@@ -103,6 +103,8 @@ std::string frame_bytes(const FrameState& frame) {
   writer.add(magic.data(), magic.size());
   writer(frame_version);
   for (const double ms : frame.times.ms) writer(ms);
+  writer(frame.lids.left);
+  writer(frame.lids.right);
   visit_frame(frame, writer);
   writer(frame.state_hash);
   writer(state_hash(frame));
@@ -123,6 +125,11 @@ FrameState frame_of_bytes(std::string_view bytes, const std::filesystem::path& f
                          std::to_string(frame_version));
   FrameState frame;
   for (double& ms : frame.times.ms) reader(ms);
+  for (double* const closure : {&frame.lids.left, &frame.lids.right}) {
+    reader(*closure);
+    if (!(*closure >= 0 && *closure <= 1))
+      reader.refuse("a closure of lids of " + std::to_string(*closure) + " is not within 0 to 1");
+  }
   visit_frame(frame, reader);
   std::uint64_t written = 0;
   reader(frame.state_hash);

@@ -8,8 +8,9 @@
 
 namespace condyle {
 
-/// A frame as bytes: "CONDYLEF", the version of the format, measured times, the fields in the order
-/// of visit_frame() and their hash, little-endian. Writing and reading round-trips bit-identically.
+/// A frame as bytes: "CONDYLEF", the version of the format, measured times, closure of the lids,
+/// the fields in the order of visit_frame() and their hash, little-endian. Writing and reading
+/// round-trips bit-identically.
 std::string frame_bytes(const FrameState& frame);
 
 /// throws: InputError, with `file` as the name, for bytes that are no frame, a newer version,

@@ -8,6 +8,7 @@
 #include "engine/math/pose.h"
 #include "sim/frame/body_poses.h"
 #include "sim/frame/contact_set.h"
+#include "sim/frame/face_excitation.h"
 #include "sim/frame/measures.h"
 #include "sim/frame/muscle_state.h"
 #include "sim/frame/tissue_state.h"
@@ -20,8 +21,8 @@ struct StepInput {
   // Target pose of each body in its parent's frame, set by the motion, a hand or a plan; missing
   // ones are at rest.
   std::vector<Pose> X_PB_target = {};
-  std::vector<double> excitation = {};  // of the muscles of the face; missing ones are relaxed
-  bool obey_contact = true;             // false plays a recording unaltered
+  FaceExcitation excitation = {};
+  bool obey_contact = true;  // false plays a recording unaltered
   // with contact: large distances may be lower bounds (ContactModel::slide)
   bool bound_far = false;
 };
@@ -38,6 +39,7 @@ struct FrameState {
       face;  // vertices of the displayed face, mm; empty when not requested
   Measures measures;
   MuscleStates muscles;  // of a motion driven by muscles, in the order of the case
+  LidClosure lids;       // drawn; excluded from the hash
   StageTimes times;      // measured; excluded from the hash
   std::uint64_t state_hash = 0;
 };

@@ -9,6 +9,7 @@
 #include "engine/math/pose.h"
 #include "sim/case/case.h"
 #include "sim/contact/contact.h"
+#include "sim/frame/face_excitation.h"
 #include "sim/frame/muscle_state.h"
 
 namespace condyle {
@@ -62,8 +63,8 @@ struct Motion {
   // Of a muscle-driven motion: names and states of the muscles at a time.
   std::vector<std::string> muscle_names = {};
   std::function<MuscleStates(double time_s)> muscles = {};
-  // 0 to 1 at a time, of each muscle of the face; empty: they are relaxed.
-  std::function<std::vector<double>(double time_s)> expression = {};
+  // Of the face at a time; empty: it is relaxed.
+  std::function<FaceExcitation(double time_s)> expression = {};
   // X_CH at a time, rest to now, where muscles attach to a hyoid; empty: it is fixed.
   std::function<Pose(double time_s)> hyoid = {};
   std::optional<RecordingFacts> recording = {};  // of a file

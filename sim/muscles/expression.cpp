@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
 #include <utility>
 
 #include "engine/core/error.h"
@@ -17,6 +18,8 @@ namespace {
 
 constexpr double held_until_s = 1;
 constexpr std::size_t max_expression_bytes = std::size_t{16} << 20;
+constexpr const char* lids_are_drawn =
+    "look only: closing lids are in pictures alone, and nothing measured depends on them";
 
 std::filesystem::path file_of(const std::string& spec) { return spec; }
 
@@ -49,29 +52,54 @@ std::vector<ExpressionLevel> parse_levels(const std::string& spec) {
   return levels;
 }
 
-std::vector<std::size_t> muscles_called(std::string_view name,
-                                        std::span<const FaceMuscle> muscles) {
-  std::vector<std::size_t> found;
-  for (std::size_t m = 0; m < muscles.size(); ++m)
-    if (muscles[m].name == name || muscles[m].kind == name) found.push_back(m);
-  return found;
-}
-
-/// Values of the columns of a file, and the muscles that each excites.
-struct ExcitationColumn {
-  ExcitationCurve curve;
-  std::vector<std::size_t> muscles;
+/// A name without its side, and whether it stands for each side.
+struct SidedName {
+  std::string_view name;
+  bool left = true, right = true;
 };
 
-std::vector<double> excitations_of(std::span<const ExcitationColumn> columns, std::size_t muscles,
-                                   double time_s) {
-  std::vector<double> values(muscles, 0.0);
-  for (const ExcitationColumn& column : columns) {
-    const double value = column.curve(time_s);
-    for (const std::size_t m : column.muscles) values[m] += value;
+SidedName sided_name(std::string_view name) {
+  constexpr std::string_view left = "left_", right = "right_";
+  if (name.starts_with(left)) return {.name = name.substr(left.size()), .right = false};
+  if (name.starts_with(right)) return {.name = name.substr(right.size()), .left = false};
+  return {.name = name};
+}
+
+/// What the column of a file with this name excites by a value of 1; none: nothing has the name.
+std::optional<FaceExcitation> excited_by(std::string_view column,
+                                         std::span<const FaceMuscle> muscles) {
+  FaceExcitation excited{.muscles = std::vector<double>(muscles.size(), 0.0)};
+  bool found = false;
+  for (std::size_t m = 0; m < muscles.size(); ++m) {
+    if (muscles[m].name != column && muscles[m].kind != column) continue;
+    excited.muscles[m] = 1;
+    found = true;
   }
-  for (double& value : values) value = std::clamp(value, 0.0, 1.0);
-  return values;
+  if (found) return excited;
+  const auto [name, left, right] = sided_name(column);
+  if (name == lid_closer) {
+    excited.lids = {left ? 1.0 : 0.0, right ? 1.0 : 0.0};
+    return excited;
+  }
+  const NamedExpression* expression = find_expression(name);
+  if (!expression) return std::nullopt;
+  const ExpressionLevel level{expression->name, left ? 1.0 : 0.0, right ? 1.0 : 0.0};
+  return excitation_of({&level, 1}, muscles);
+}
+
+/// The values of a column of a file, and what it excites.
+struct ExcitationColumn {
+  ExcitationCurve curve;
+  FaceExcitation excited;
+};
+
+FaceExcitation excitation_by(std::span<const ExcitationColumn> columns, std::size_t muscles,
+                             double time_s) {
+  FaceExcitation sum{.muscles = std::vector<double>(muscles, 0.0)};
+  for (const auto& [curve, excited] : columns)
+    sum = added_excitations(std::move(sum), between({.muscles = std::vector<double>(muscles, 0.0)},
+                                                    excited, std::clamp(curve(time_s), 0.0, 1.0)));
+  return sum;
 }
 
 Expression expression_of_file(const std::string& spec, std::span<const FaceMuscle> muscles) {
@@ -94,13 +122,16 @@ Expression expression_of_file(const std::string& spec, std::span<const FaceMuscl
   std::vector<ExcitationColumn> columns;
   for (std::size_t c = 0; c < names.size(); ++c) {
     if (c == time) continue;
-    std::vector<std::size_t> excited = muscles_called(names[c], muscles);
-    if (excited.empty()) {
+    std::optional<FaceExcitation> excited = excited_by(names[c], muscles);
+    if (!excited) {
       std::string known;
-      for (const FaceMuscle& muscle : muscles) known += (known.empty() ? "" : ", ") + muscle.name;
-      throw InputError(file, header,
-                       "\"" + shortened(names[c]) + "\" is not a muscle of the face; valid ones, " +
-                           "also without left_ or right_ for both sides, are " + known);
+      for (const FaceMuscle& muscle : muscles) known += muscle.name + ", ";
+      throw InputError(
+          file, header,
+          fmt::format("\"{}\" is not a muscle of the face, expression or action unit; "
+                      "valid ones, also without left_ or right_ for both sides, are "
+                      "{}left_{}, right_{}, {}",
+                      shortened(names[c]), known, lid_closer, lid_closer, list_expressions()));
     }
     std::vector<double> values;
     for (std::size_t row = 0; row < table.rows(); ++row) {
@@ -111,13 +142,17 @@ Expression expression_of_file(const std::string& spec, std::span<const FaceMuscl
       values.push_back(value);
     }
     columns.push_back(
-        {ExcitationCurve(times, std::move(values), Interpolation::smooth), std::move(excited)});
+        {ExcitationCurve(times, std::move(values), Interpolation::smooth), std::move(*excited)});
   }
+  const bool closes_lids = std::any_of(
+      columns.begin(), columns.end(), [](const auto& column) { return column.excited.lids.any(); });
+  std::vector<std::string> notes;
+  if (closes_lids) notes.emplace_back(lids_are_drawn);
   return {.name = file.filename().string(),
           .duration_s = times.back(),
-          .at = [columns = std::move(columns), count = muscles.size()](double time_s) {
-            return excitations_of(columns, count, time_s);
-          }};
+          .at = [columns = std::move(columns), count = muscles.size()](
+                    double time_s) { return excitation_by(columns, count, time_s); },
+          .notes = std::move(notes)};
 }
 
 }  // namespace
@@ -125,7 +160,7 @@ Expression expression_of_file(const std::string& spec, std::span<const FaceMuscl
 Expression expression_through(std::string name, std::span<const ExpressionKey> keys,
                               std::span<const FaceMuscle> muscles) {
   std::vector<double> times;
-  std::vector<std::vector<double>> values;
+  std::vector<FaceExcitation> values;
   std::vector<std::string> notes;
   for (const ExpressionKey& key : keys) {
     const std::string missing = missing_kinds(key.levels, muscles);
@@ -134,6 +169,8 @@ Expression expression_through(std::string name, std::span<const ExpressionKey> k
     times.push_back(key.time_s);
     values.push_back(excitation_of(key.levels, muscles));
   }
+  if (std::any_of(values.begin(), values.end(), [](const auto& value) { return value.lids.any(); }))
+    notes.emplace_back(lids_are_drawn);
   const double end_s = times.back();
   return {.name = std::move(name),
           .duration_s = end_s,
@@ -145,10 +182,7 @@ Expression expression_through(std::string name, std::span<const ExpressionKey> k
                 if (next == times.size()) return values.back();
                 const double u = (time_s - times[next - 1]) / (times[next] - times[next - 1]);
                 const double s = u * u * (3 - 2 * u);
-                std::vector<double> now = values[next - 1];
-                for (std::size_t m = 0; m < now.size(); ++m)
-                  now[m] += s * (values[next][m] - now[m]);
-                return now;
+                return between(values[next - 1], values[next], s);
               },
           .notes = std::move(notes)};
 }
@@ -166,10 +200,10 @@ bool expression_moves_upper_face(const std::string& spec) {
   TextLines lines(text);
   if (!lines.next_filled()) return false;
   const auto names = fields_of(lines.line(), ',');
-  return std::any_of(names.begin(), names.end(), [](std::string_view name) {
-    for (const std::string_view side : {"left_", "right_"})
-      if (name.starts_with(side)) name.remove_prefix(side.size());
-    return pulls_upper_face(std::string(name));
+  return std::any_of(names.begin(), names.end(), [](std::string_view column) {
+    const std::string_view name = sided_name(column).name;
+    const ExpressionLevel level{.name = std::string(name), .left = 1};
+    return pulls_upper_face(level.name) || moves_upper_face({&level, 1});
   });
 }
 

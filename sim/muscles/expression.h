@@ -10,12 +10,12 @@
 
 namespace condyle {
 
-/// Excitation of the muscles of the face over time.
+/// Excitation of the face over time.
 struct Expression {
   std::string name;
   double duration_s = 0;
-  /// One value from 0 to 1 for each muscle; constant beyond the ends.
-  std::function<std::vector<double>(double time_s)> at;
+  /// One value for each muscle; constant beyond the ends.
+  std::function<FaceExcitation(double time_s)> at;
   std::vector<std::string> notes = {};  // on muscles that the patient lacks
 };
 
@@ -41,9 +41,10 @@ bool expression_moves_upper_face(const std::string& spec);
 
 /// Expressions and action units, NAME[:STRENGTH[:left|right]], several joined by "+" (their
 /// excitations add up), which begin at 0 s and are complete at 0.5 s; or a CSV file with a column
-/// time_s and one for each muscle or, for both sides, each kind, with values from 0 to 1. A side
-/// excites the muscles of that side and those in the middle.
-/// throws: InputError as check_expression(), and with file, line and value.
+/// time_s and, with values from 0 to 1, columns for muscles (left_risorius), or for both sides
+/// their kinds (risorius), and for expressions and action units (AU12, left_AU12), which add up. A
+/// side excites the muscles of that side and those in the middle. throws: InputError as
+/// check_expression(), and with file, line and value.
 Expression make_expression(const std::string& spec, std::span<const FaceMuscle> muscles);
 
 }  // namespace condyle

@@ -1,12 +1,25 @@
 #include "sim/muscles/expression_names.h"
 
 #include <algorithm>
+#include <cassert>
 #include <set>
+#include <utility>
 
 #include "engine/core/text_table.h"
 #include "sim/case/face_muscle_table.h"
 
 namespace condyle {
+namespace {
+
+FaceExcitation limited(FaceExcitation excitation) {
+  const auto limit = [](double& value) { value = std::clamp(value, 0.0, 1.0); };
+  std::ranges::for_each(excitation.muscles, limit);
+  limit(excitation.lids.left);
+  limit(excitation.lids.right);
+  return excitation;
+}
+
+}  // namespace
 
 const std::vector<NamedExpression>& named_expressions() {
   static const std::vector<NamedExpression> all = {
@@ -70,6 +83,8 @@ const std::vector<NamedExpression>& named_expressions() {
       {"AU22", "lip funneler", {{"orbicularis_oris_peripheral", 1}}},
       {"AU23", "lip tightener", {{"orbicularis_oris_marginal", 1}}},
       {"AU24", "lip pressor", {{"orbicularis_oris_marginal", 1}, {"mentalis", 0.5}}},
+      {"AU43", "eyes closed", {{std::string(lid_closer), 1}}},
+      {"AU45", "blink", {{std::string(lid_closer), 1}}},
   };
   return all;
 }
@@ -104,24 +119,28 @@ std::string list_expressions() {
   return names;
 }
 
-std::vector<double> excitation_of(std::span<const ExpressionLevel> levels,
-                                  std::span<const FaceMuscle> muscles) {
-  std::vector<double> values(muscles.size(), 0.0);
+FaceExcitation excitation_of(std::span<const ExpressionLevel> levels,
+                             std::span<const FaceMuscle> muscles) {
+  FaceExcitation sum{.muscles = std::vector<double>(muscles.size(), 0.0)};
   for (const ExpressionLevel& level : levels) {
     const NamedExpression* expression = find_expression(level.name);
     if (!expression) continue;
-    for (const auto& [kind, value] : expression->kinds)
+    for (const auto& [kind, value] : expression->kinds) {
+      if (kind == lid_closer) {
+        sum.lids.left += value * level.left;
+        sum.lids.right += value * level.right;
+      }
       for (std::size_t m = 0; m < muscles.size(); ++m) {
         if (muscles[m].kind != kind) continue;
         const double strength = muscles[m].name.starts_with("left_") ? level.left
                                 : muscles[m].name.starts_with("right_")
                                     ? level.right
                                     : std::max(level.left, level.right);
-        values[m] += value * strength;
+        sum.muscles[m] += value * strength;
       }
+    }
   }
-  for (double& value : values) value = std::clamp(value, 0.0, 1.0);
-  return values;
+  return limited(std::move(sum));
 }
 
 std::string missing_kinds(std::span<const ExpressionLevel> levels,
@@ -133,7 +152,8 @@ std::string missing_kinds(std::span<const ExpressionLevel> levels,
     if (!expression || std::max(level.left, level.right) <= 0) continue;
     bool complete = true;
     for (const auto& of : expression->kinds) {
-      if (std::any_of(muscles.begin(), muscles.end(),
+      if (of.kind == lid_closer ||
+          std::any_of(muscles.begin(), muscles.end(),
                       [&](const FaceMuscle& muscle) { return muscle.kind == of.kind; }))
         continue;
       complete = false;
@@ -146,9 +166,20 @@ std::string missing_kinds(std::span<const ExpressionLevel> levels,
          ", as the case has none and landmarks for default ones are missing";
 }
 
-std::vector<double> added_excitations(std::vector<double> a, std::span<const double> b) {
-  a.resize(std::max(a.size(), b.size()));
-  for (std::size_t m = 0; m < b.size(); ++m) a[m] = std::min(1.0, a[m] + b[m]);
+FaceExcitation added_excitations(FaceExcitation a, const FaceExcitation& b) {
+  a.muscles.resize(std::max(a.muscles.size(), b.muscles.size()));
+  for (std::size_t m = 0; m < b.muscles.size(); ++m) a.muscles[m] += b.muscles[m];
+  a.lids.left += b.lids.left;
+  a.lids.right += b.lids.right;
+  return limited(std::move(a));
+}
+
+FaceExcitation between(FaceExcitation a, const FaceExcitation& b, double fraction) {
+  assert(a.muscles.size() == b.muscles.size());
+  const auto move = [&](double& from, double to) { from += fraction * (to - from); };
+  for (std::size_t m = 0; m < a.muscles.size(); ++m) move(a.muscles[m], b.muscles[m]);
+  move(a.lids.left, b.lids.left);
+  move(a.lids.right, b.lids.right);
   return a;
 }
 

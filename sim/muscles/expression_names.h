@@ -7,8 +7,12 @@
 
 #include "sim/case/face_muscle.h"
 #include "sim/frame/expression_level.h"
+#include "sim/frame/face_excitation.h"
 
 namespace condyle {
+
+/// Kind of the muscle that closes the lids, which patients have without a line: see LidClosure.
+inline constexpr std::string_view lid_closer = "orbicularis_oculi_palpebral";
 
 /// Excitation of a kind of muscle of the face, 0 to 1.
 struct KindExcitation {
@@ -40,16 +44,18 @@ std::vector<std::string> builtin_expressions();
 /// All names, as "smile, sad, AU9": for messages.
 std::string list_expressions();
 
-/// One value from 0 to 1 for each muscle: the sum of the levels, at most 1. Muscles in the middle
-/// are excited as the stronger side. Unknown names excite nothing.
-std::vector<double> excitation_of(std::span<const ExpressionLevel> levels,
-                                  std::span<const FaceMuscle> muscles);
+/// One value for each muscle: the sum of the levels, at most 1. Muscles in the middle are excited
+/// as the stronger side. Unknown names excite nothing.
+FaceExcitation excitation_of(std::span<const ExpressionLevel> levels,
+                             std::span<const FaceMuscle> muscles);
 
 /// A sentence on the kinds of muscles that the levels excite and the face lacks; empty: none.
 std::string missing_kinds(std::span<const ExpressionLevel> levels,
                           std::span<const FaceMuscle> muscles);
 
-/// The sums, at most 1; the shorter list counts as 0 beyond its end.
-std::vector<double> added_excitations(std::vector<double> a, std::span<const double> b);
+/// The sums, at most 1; of muscles, the shorter list counts as 0 beyond its end.
+FaceExcitation added_excitations(FaceExcitation a, const FaceExcitation& b);
+/// a + fraction * (b - a), of excitations of the same muscles.
+FaceExcitation between(FaceExcitation a, const FaceExcitation& b, double fraction);
 
 }  // namespace condyle

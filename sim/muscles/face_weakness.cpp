@@ -2,9 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "engine/core/error.h"
 #include "engine/core/text_list.h"
 #include "engine/core/text_table.h"
+#include "sim/muscles/expression_names.h"
 
 namespace condyle {
 namespace {
@@ -32,9 +35,10 @@ void check_weakness(std::span<const std::string> specs) {
   for (const std::string& spec : specs) parse_weakness(spec);
 }
 
-std::vector<double> muscle_strengths(std::span<const std::string> specs,
-                                     std::span<const FaceMuscle> muscles) {
-  std::vector<double> strengths(muscles.size(), 1);
+FaceStrengths muscle_strengths(std::span<const std::string> specs,
+                               std::span<const FaceMuscle> muscles) {
+  const std::string lids(lid_closer), left_lids = "left_" + lids, right_lids = "right_" + lids;
+  FaceStrengths strengths{.muscles = std::vector<double>(muscles.size(), 1)};
   double left = 1, right = 1;
   for (const std::string& spec : specs) {
     const auto [of, strength] = parse_weakness(spec);
@@ -42,21 +46,34 @@ std::vector<double> muscle_strengths(std::span<const std::string> specs,
     if (found) (of == "left" ? left : right) *= strength;
     for (std::size_t m = 0; m < muscles.size() && of != "left" && of != "right"; ++m) {
       if (muscles[m].name != of && muscles[m].kind != of) continue;
-      strengths[m] *= strength;
+      strengths.muscles[m] *= strength;
       found = true;
     }
+    if (of == lids || of == left_lids) strengths.left_lids *= strength, found = true;
+    if (of == lids || of == right_lids) strengths.right_lids *= strength, found = true;
     if (found) continue;
     std::string known;
     for (const FaceMuscle& muscle : muscles) known += ", " + muscle.name;
     throw InputError("--weakness " + shortened(spec) + ": \"" + shortened(of) +
                      "\" is neither a side nor a muscle of the face; valid ones are left, right" +
-                     known + ", and names without a side for both");
+                     known + ", " + left_lids + ", " + right_lids +
+                     ", and names without a side for both");
   }
   for (std::size_t m = 0; m < muscles.size(); ++m)
-    strengths[m] *= muscles[m].name.starts_with("left_")    ? left
-                    : muscles[m].name.starts_with("right_") ? right
-                                                            : 0.5 * (left + right);
+    strengths.muscles[m] *= muscles[m].name.starts_with("left_")    ? left
+                            : muscles[m].name.starts_with("right_") ? right
+                                                                    : 0.5 * (left + right);
+  strengths.left_lids *= left;
+  strengths.right_lids *= right;
   return strengths;
+}
+
+FaceExcitation weakened(FaceExcitation healthy, const FaceStrengths& strengths) {
+  const std::size_t count = std::min(healthy.muscles.size(), strengths.muscles.size());
+  for (std::size_t m = 0; m < count; ++m) healthy.muscles[m] *= strengths.muscles[m];
+  healthy.lids.left *= strengths.left_lids;
+  healthy.lids.right *= strengths.right_lids;
+  return healthy;
 }
 
 }  // namespace condyle

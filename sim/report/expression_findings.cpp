@@ -27,7 +27,7 @@ bool is_full(std::initializer_list<const char*> names, std::span<const double> e
              std::span<const FaceMuscle> muscles) {
   std::vector<ExpressionLevel> full;
   for (const char* name : names) full.push_back({.name = name, .left = 1, .right = 1});
-  const std::vector<double> smile = excitation_of(full, muscles);
+  const std::vector<double> smile = excitation_of(full, muscles).muscles;
   return std::equal(smile.begin(), smile.end(), excitation.begin(), excitation.end(),
                     [](double a, double b) { return std::abs(a - b) < 1e-6; });
 }

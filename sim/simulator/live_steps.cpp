@@ -55,10 +55,10 @@ StepInput LiveSteps::input(const LiveTarget& target, double time_s, bool shown) 
   return input;
 }
 
-/// Of the muscles of the face: those of the motion and of the request, added up.
-std::vector<double> LiveSteps::excitation(const LiveRequest& request, double time_s) const {
+/// Of the face: that of the motion and that of the request, added up.
+FaceExcitation LiveSteps::excitation(const LiveRequest& request, double time_s) const {
   if (!scene_.tissue) return {};
-  std::vector<double> requested;
+  FaceExcitation requested;
   if (!request.expression.empty())
     requested = excitation_of(request.expression, face_muscles_of(*scene_.tissue));
   if (!motion_.expression) return requested;

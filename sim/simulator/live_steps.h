@@ -48,7 +48,7 @@ class LiveSteps {
 
  private:
   StepInput input(const LiveTarget& target, double time_s, bool shown);
-  std::vector<double> excitation(const LiveRequest& request, double time_s) const;
+  FaceExcitation excitation(const LiveRequest& request, double time_s) const;
   void begin_at(const BodyPoses& poses);
   TeleportStart::Asked asked(const LiveTarget& target, const StepInput& input) const;
   SimulatorSettings settings_for(const LiveTarget& target, const StepInput& input) const;

@@ -100,6 +100,7 @@ FrameState step(const Scene& scene, const FrameState& previous, const StepInput&
   now.time_s = input.time_s;
   now.X_PB_target = input.X_PB_target;
   now.X_PB_target.resize(scene.patient.bodies.bodies().size());
+  now.lids = input.excitation.lids;
   {
     const StageTimer timer(now.times, Stage::contact);
     if (input.obey_contact) {
@@ -120,7 +121,7 @@ FrameState step(const Scene& scene, const FrameState& previous, const StepInput&
     TissueBudget budget = settings.tissue_budget;
     budget.threads = settings.threads;
     now.tissue = solve_tissue(*scene.tissue, previous.tissue, now.poses.X_CB, budget, warm,
-                              input.excitation);
+                              input.excitation.muscles);
   }
   {
     const StageTimer timer(now.times, Stage::measures);

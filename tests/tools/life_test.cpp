@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 /// When the lids are closed for the first time.
 double closed_at() {
   double time_s = 0;
-  while (life_signs(time_s).closure < 1) time_s += 0.001;
+  while (life_signs(time_s).lids.left < 1) time_s += 0.001;
   return time_s + 0.01;
 }
 
@@ -89,6 +89,55 @@ TEST(LifeOfTheFace, IsInPicturesAlone) {
   // But not a picture without life.
   done = condyle(recording(alive, {"--resume"}));
   EXPECT_EQ(done.code, 2);
+}
+
+TEST(LidsOfAnExpression, AreInPicturesAlone) {
+  const Folder folder;
+  const auto wink = [&](const char* name, const char* expression,
+                        const std::vector<std::string>& more = {}) {
+    std::vector<std::string> command = {"record",  "--expression", expression,   "--frames",
+                                        "3",       "--camera",     "front",      "--size",
+                                        "300x300", "--out",        folder / name};
+    command.insert(command.end(), more.begin(), more.end());
+    return command;
+  };
+  const auto recorded = [&](const std::vector<std::string>& command) {
+    const Outcome done = condyle(command);
+    EXPECT_EQ(done.code, 0) << done.err;
+    return fs::path(command[10]);
+  };
+  const fs::path open = recorded(wink("open", "AU12:0")),
+                 closed = recorded(wink("closed", "AU45", {"--threads", "1"})),
+                 left = recorded(wink("left", "AU45:1:left")),
+                 palsied = recorded(wink("palsied", "AU43", {"--weakness", "right:0"}));
+  EXPECT_EQ(measured(open), measured(closed)) << "hashes, too";
+  EXPECT_EQ(read_text(open / "expression.csv"), read_text(closed / "expression.csv"));
+  const auto last = [](const fs::path& out) {
+    return Picture((out / "frames/000002.png").string());
+  };
+  EXPECT_TRUE(same_bytes(Picture((open / "frames/000000.png").string()),
+                         Picture((closed / "frames/000000.png").string())));
+  const Region right_half{0, 0, 150, 300}, left_half{150, 0, 150, 300};  // of the patient
+  EXPECT_TRUE(unlike(last(open), last(closed), 0.002));
+  EXPECT_TRUE(unlike(last(open), last(left), 0.001));
+  EXPECT_TRUE(alike(last(open), last(left), 0, right_half)) << "one eye stays open";
+  EXPECT_TRUE(alike(last(closed), last(left), 0, left_half));
+  EXPECT_TRUE(same_bytes(last(palsied), last(left))) << "a palsied lid stays open";
+  const auto report = nlohmann::json::parse(read_text(closed / "report.json"));
+  EXPECT_NE(report["motion"]["notes"].dump().find("look only"), std::string::npos);
+  EXPECT_FALSE(report["pictures"].contains("lids")) << "nothing is missing";
+
+  const std::string frame = read_text(closed / "frames/000002.png");
+  fs::remove(closed / "frames/000002.png");
+  recorded(wink("closed", "AU45", {"--threads", "2", "--resume"}));
+  EXPECT_EQ(read_text(closed / "frames/000002.png"), frame);
+  EXPECT_EQ(condyle(wink("closed", "AU45:0.5", {"--resume"})).code, 2) << "another expression";
+
+  write_text(folder / "high.csv", "time_s,AU45\n0,0\n1,1.2\n");
+  const std::string high = folder / "high.csv";
+  const Outcome refused = condyle(wink("high", high.c_str()));
+  EXPECT_EQ(refused.code, 2);
+  EXPECT_NE(refused.err.find("line 3, AU45"), std::string::npos) << refused.err;
 }
 
 TEST(LifeOfTheFace, IsRefusedInPicturesThatCompare) {

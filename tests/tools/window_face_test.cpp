@@ -100,7 +100,7 @@ TEST_F(WindowSession, SlidersMoveTheLiveFaceAndAreSavedWithTheSession) {
 
 TEST_F(WindowSession, TheLifeSwitchClosesTheEyesOfABlinkAndOpensThemAgain) {
   double blink_s = 0;
-  while (life_signs(blink_s).closure < 1) blink_s += 0.001;
+  while (life_signs(blink_s).lids.left < 1) blink_s += 0.001;
   start({"--motion", fmt::format("hold {:.3f}", blink_s + 0.01)});
   ASSERT_TRUE(wait_until(idle, 120));
   EXPECT_TRUE(press("a"));
@@ -130,6 +130,30 @@ TEST_F(WindowSession, TheLifeSwitchClosesTheEyesOfABlinkAndOpensThemAgain) {
   click("life");
   EXPECT_TRUE(wait_until([&](const Json& s) { return !is_on(s); }, 20));
   EXPECT_GT(see("off"), 0.001);
+  EXPECT_TRUE(press("ctrl+q"));
+  EXPECT_EQ(wait_for_end(), 0);
+}
+
+TEST_F(WindowSession, ASliderClosesTheEyesInPicturesAlone) {
+  start({"--motion", "rest"});
+  ASSERT_TRUE(wait_until(idle, 120));
+  EXPECT_TRUE(press("a"));
+  click("tab:Face");
+  ASSERT_TRUE(wait_for_item("expression:surprise:right"));
+  const auto list = rect("expression:surprise:right");
+  EXPECT_TRUE(xdotool({"mousemove", px(list[0] + 20), px(list[1] + 40), "click", "--repeat", "60",
+                       "--delay", "20", "5"}));
+  ASSERT_TRUE(wait_for_item("expression:AU43:right"));
+  ASSERT_TRUE(wait_until([](const Json& s) { return s["picture_finished"] == true; }));
+  see("eyes-open");
+  const Json measured = state()["frame"];
+  const auto r = rect("expression:AU43:right");
+  drag(r[0] + 0.03 * r[2], r[1] + r[3] / 2, r[0] + 0.97 * r[2], r[1] + r[3] / 2);
+  EXPECT_TRUE(wait_until([](const Json& s) {
+    return s["edits"]["expression"].contains("AU43") && s["picture_finished"] == true;
+  }));
+  EXPECT_GT(see("eyes-closed"), 0.001);
+  EXPECT_EQ(state()["frame"], measured);
   EXPECT_TRUE(press("ctrl+q"));
   EXPECT_EQ(wait_for_end(), 0);
 }
@@ -180,6 +204,16 @@ TEST_F(WindowSession, NotesSayWhyBrowsDoNotMoveAndWhichMusclesAreMissing) {
   })) << state()["notes"].dump();
   EXPECT_EQ(state()["notes"][0].get<std::string>().find(lacking), 0u) << "the last change is first";
   see("notes");
+  const std::string open = "expressions do not close the lids: no eyeballs were found";
+  EXPECT_EQ(notes_with(state(), open), 0);
+  EXPECT_TRUE(xdotool({"mousemove", px(r[0] + 20), px(r[1] + 40), "click", "--repeat", "60",
+                       "--delay", "20", "5"}));
+  ASSERT_TRUE(wait_for_item("expression:AU45:right"));
+  const auto blink = rect("expression:AU45:right");
+  drag(blink[0] + 0.03 * blink[2], blink[1] + blink[3] / 2, blink[0] + 0.6 * blink[2],
+       blink[1] + blink[3] / 2);
+  EXPECT_TRUE(wait_until([&](const Json& s) { return notes_with(s, open) == 1; }))
+      << state()["notes"].dump();
   click("expression-relax");
   EXPECT_TRUE(wait_until([&](const Json& s) { return notes_with(s, lacking) == 0; }))
       << "the face is relaxed: " << state()["notes"].dump();

@@ -84,7 +84,7 @@ FacePull pull_of_face(const Case& patient) {
                                             {.name = "AU13", .left = 0.2, .right = 0.2},
                                             {.name = "AU17", .left = 0.2, .right = 0.2},
                                             {.name = "AU23", .left = 0.2, .right = 0.2}};
-  pull.excitation = excitation_of(levels, pull.muscles);
+  pull.excitation = excitation_of(levels, pull.muscles).muscles;
   return pull;
 }
 

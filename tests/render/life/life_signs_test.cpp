@@ -22,7 +22,7 @@ std::vector<Blink> blinks_until(double end_s) {
   std::vector<Blink> blinks;
   double before = 0;
   for (int i = 0; i * step_s < end_s; ++i) {
-    const double t = i * step_s, closure = life_signs(t).closure;
+    const double t = i * step_s, closure = life_signs(t).lids.left;
     EXPECT_GE(closure, 0);
     EXPECT_LE(closure, 1);
     if (closure > 0 && before == 0) blinks.push_back({t, 0, 0, 0});

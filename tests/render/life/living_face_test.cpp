@@ -77,13 +77,49 @@ class LivingPatient : public testing::Test {
 TEST_F(LivingPatient, ClosedLidsHideBothEyeballsFromTheFrontAndThreeQuarters) {
   EXPECT_EQ(living_.shortfall(), "");
   for (const double turn : {-0.7, 0.0, 0.7}) {
-    const int open = seen({}, turn), half = seen({.closure = 0.5}, turn);
+    const int open = seen({}, turn), half = seen({.lids = {0.5, 0.5}}, turn);
     EXPECT_GT(open, 700) << turn;
     EXPECT_GT(half, 0.2 * open);
     EXPECT_LT(half, 0.75 * open);
     for (const double gaze : {-0.12, 0.0, 0.12})
-      EXPECT_EQ(seen({.closure = 1, .gaze_left = gaze}, turn), 0) << turn << " " << gaze;
+      EXPECT_EQ(seen({.lids = {1, 1}, .gaze_left = gaze}, turn), 0) << turn << " " << gaze;
   }
+}
+
+TEST_F(LivingPatient, AnExpressionClosesTheEyesOfItsSidesAndMovesNothingElse) {
+  const auto seen_by = [&](const LidClosure& lids) {
+    return seen({.lids = lids, .alive = false}, 0);
+  };
+  const int open = seen_by({}), left = seen_by({1, 0}), right = seen_by({0, 1});
+  EXPECT_EQ(seen_by({1, 1}), 0);
+  EXPECT_NEAR(left, open / 2, 0.05 * open) << "the right eye shows";
+  EXPECT_EQ(left + right, open);
+  const LifeSigns wink{.lids = {1, 0}, .alive = false};
+  EXPECT_EQ(moved({.alive = false}), rest_);
+  const auto places = moved(wink);
+  int closed = 0;
+  for (std::size_t v = 0; v < places.size(); ++v) {
+    if (places[v] == rest_[v]) continue;
+    ++closed;
+    EXPECT_GT(rest_[v].x(), 10) << "the patient's left";
+    EXPECT_LT((rest_[v] - Vector3f(32, -75, 14)).norm(), 40);
+  }
+  EXPECT_GT(closed, 100);
+  // Eyeballs do not turn; the lashes of the upper lid go with it.
+  const auto eyes_at_rest = floats(eyes_.mesh);
+  auto eyes = eyes_at_rest;
+  std::vector<Vector3f> normals(eyes.size(), Vector3f::UnitZ());
+  for (std::size_t i = 0; i < patient().parts.size(); ++i)
+    if (&patient().parts[i] == &eyes_) living_.move_eyes(i, wink, eyes, normals);
+  const auto radii = lash_radii(eyes_.mesh);
+  int lashes = 0;
+  for (std::size_t v = 0; v < eyes.size(); ++v)
+    if (eyes[v] != eyes_at_rest[v]) {
+      EXPECT_GT(radii[v], 0);
+      EXPECT_GT(eyes_at_rest[v].x(), 0);
+      ++lashes;
+    }
+  EXPECT_GT(lashes, 100);
 }
 
 TEST_F(LivingPatient, ClosedLidsCoverTheCaruncleWithoutAStep) {
@@ -98,7 +134,7 @@ TEST_F(LivingPatient, ClosedLidsCoverTheCaruncleWithoutAStep) {
         const auto hit = tree.ray_cast(Vector3d(x, -150, z), Vector3d::UnitY(), 90);
         if (hit && before) most = std::max(most, std::abs(hit->distance - *before));
         before = hit ? std::optional(hit->distance) : std::nullopt;
-        if (signs.closure == 1) {
+        if (signs.lids.left == 1) {
           EXPECT_TRUE(hit) << x << " " << z;
         }
       }
@@ -106,12 +142,12 @@ TEST_F(LivingPatient, ClosedLidsCoverTheCaruncleWithoutAStep) {
     return most;
   };
   EXPECT_GT(step({}), 2);
-  EXPECT_LT(step({.closure = 1}), 0.75);
+  EXPECT_LT(step({.lids = {1, 1}}), 0.75);
 }
 
 TEST_F(LivingPatient, AClosedLidHasACreaseAboveItsPlate) {
   const LivingEyes eyes(eyes_.mesh);
-  const TriMesh skin = skin_of({.closure = 1});
+  const TriMesh skin = skin_of({.lids = {1, 1}});
   const TriangleTree tree(skin);
   for (const Eyeball& ball : eyes.eyeballs()) {
     const Vector3d centre = ball.centre.cast<double>();
@@ -135,7 +171,7 @@ TEST_F(LivingPatient, NoSkinThatALidMovesIsInsideAnEyeball) {
   int checked = 0;
   for (double closure = 0.1; closure <= 1; closure += 0.15)
     for (const double gaze : {-0.12, 0.0, 0.12}) {
-      const LifeSigns signs{.closure = closure, .gaze_left = gaze, .gaze_up = gaze / 3};
+      const LifeSigns signs{.lids = {closure, closure}, .gaze_left = gaze, .gaze_up = gaze / 3};
       const auto places = moved(signs);
       for (std::size_t e = 0; e < 2; ++e) {
         const Eyeball& ball = eyes.eyeballs()[e];
@@ -153,7 +189,7 @@ TEST_F(LivingPatient, NoSkinThatALidMovesIsInsideAnEyeball) {
 
 TEST_F(LivingPatient, TheLidsEdgeDescendsAsFarAsMeasuredOnPeople) {
   // Closing way of the upper lid, 9.1 +- 2.2 mm; here of the skin at the middle of the lids' edges.
-  const auto closed = moved({.closure = 1});
+  const auto closed = moved({.lids = {1, 1}});
   const LivingEyes eyes(eyes_.mesh);
   for (const Eyeball& ball : eyes.eyeballs()) {
     float most = 0;

@@ -127,10 +127,11 @@ TEST(UpperLidTest, NoSkinEntersTheEyeballWhereverItLooks) {
 TEST(UpperLidTest, FollowsTheGazeDownAndUp) {
   const Eye eye;
   ASSERT_TRUE(eye.lid);
-  const double ahead_at = eye.lid->lowered(0, 0);
-  EXPECT_GT(eye.lid->lowered(0, -0.1), ahead_at);
-  EXPECT_LT(eye.lid->lowered(0, 0.05), ahead_at);
-  for (const double up : {-0.1, 0.0, 0.1}) EXPECT_EQ(eye.lid->lowered(1, up), 1);
+  const double ahead_at = eye.lid->lowered({});
+  EXPECT_GT(eye.lid->lowered({.gaze_up = -0.1}), ahead_at);
+  EXPECT_LT(eye.lid->lowered({.gaze_up = 0.05}), ahead_at);
+  for (const double up : {-0.1, 0.0, 0.1})
+    EXPECT_EQ(eye.lid->lowered({.lids = {1, 1}, .gaze_up = up}), 1);
 }
 
 TEST(UpperLidTest, ThereIsNoneWhereTheSkinIsClosedOrFarFromTheEye) {

@@ -39,7 +39,7 @@ FrameState frame_at(double time_s) {
 /// The first time of so much closure.
 double time_of(double closure) {
   double time_s = 0;
-  while (life_signs(time_s).closure < closure) time_s += 0.001;
+  while (life_signs(time_s).lids.left < closure) time_s += 0.001;
   return time_s;
 }
 
@@ -92,6 +92,48 @@ TEST_F(LifePictures, AreThoseWithoutLifeOnceItIsOffAndInGlass) {
   const Image glass = renderer.picture(eye_camera(), off);
   off.life = Life{};
   EXPECT_EQ(renderer.picture(eye_camera(), off).rgba, glass.rgba);
+}
+
+FrameState frame_closing(const LidClosure& lids, double time_s = 0) {
+  FrameState frame = frame_at(time_s);
+  frame.lids = lids;
+  return frame;
+}
+
+TEST_F(LifePictures, AnExpressionClosesTheLidsWithLifeAndWithout) {
+  const std::vector<Part> parts = eye_and_lids();  // a left eye
+  SceneRenderer renderer(parts);
+  auto off = alive();
+  off.life.reset();
+  const auto picture = [&](const FrameState& frame, const PictureSettings& settings) {
+    renderer.update(frame);
+    return renderer.picture(eye_camera(), settings);
+  };
+  const Image open = picture(frame_at(0), off);
+  const int blue = blue_in(open);
+  EXPECT_EQ(blue_in(picture(frame_closing({1, 0}), off)), 0);
+  EXPECT_EQ(picture(frame_closing({0, 1}), off).rgba, open.rgba) << "the other eye's lid";
+  const int half = blue_in(picture(frame_closing({0.5, 0}), off));
+  EXPECT_GT(half, 0.2 * blue);
+  EXPECT_LT(half, 0.8 * blue);
+  EXPECT_EQ(picture(frame_at(0), off).rgba, open.rgba) << "in any order";
+  // With life the wider closure of both counts.
+  EXPECT_EQ(blue_in(picture(frame_closing({1, 0}), alive())), 0);
+  const double blinking_s = time_of(0.6);
+  EXPECT_EQ(picture(frame_closing({0.3, 0.3}, blinking_s), alive()).rgba,
+            picture(frame_at(blinking_s), alive()).rgba);
+  EXPECT_EQ(blue_in(picture(frame_closing({1, 1}, blinking_s), alive())), 0);
+  // Skin in glass closes, too.
+  off.skin_opacity = 0.5;
+  EXPECT_NE(picture(frame_closing({1, 0}), off).rgba, picture(frame_at(0), off).rgba);
+}
+
+TEST(LidsNote, SaysWhyTheLidsOfAPatientDoNotClose) {
+  std::vector<Part> parts = eye_and_lids();
+  EXPECT_EQ(lids_note(parts), "");
+  EXPECT_NE(lids_note({parts.data(), 1}).find("no eyeballs were found"), std::string::npos);
+  parts[0].mesh = ball(eye_centre, 12.2, 60);
+  EXPECT_NE(lids_note(parts).find("no open lids were found"), std::string::npos);
 }
 
 /// Roughness of the middle of a picture across and along, from second differences of its green.

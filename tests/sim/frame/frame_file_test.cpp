@@ -49,6 +49,7 @@ FrameState full_frame() {
   FrameState frame;
   visit_frame(frame, Scrambler());
   frame.times[Stage::contact] = 1.5;
+  frame.lids = {0.25, 0.75};
   frame.state_hash = state_hash(frame);
   return frame;
 }
@@ -72,6 +73,7 @@ TEST(FrameFile, AFrameRoundTripsBitIdentically) {
   EXPECT_EQ(state_hash(read), frame.state_hash);
   EXPECT_EQ(read.state_hash, frame.state_hash);
   EXPECT_EQ(read.times[Stage::contact], 1.5);
+  EXPECT_EQ(read.lids, frame.lids);
   EXPECT_EQ(read.poses.X_CB.size(), 3u);
   EXPECT_EQ(read.contacts.pairs[2].contacts.size(), 3u);
   EXPECT_EQ(read.face[2], frame.face[2]);
@@ -108,8 +110,11 @@ TEST(FrameFile, DamagedFilesAreRefusedWithTheirName) {
   EXPECT_NE(refusal("PNG").find("is not a Condyle frame"), std::string::npos);
   std::string newer = bytes;
   newer[8] = 7;
-  EXPECT_NE(refusal(newer).find("is 7; this program reads version 2"), std::string::npos);
-  constexpr std::size_t state_begins = 8 + 4 + 6 * 8;
+  EXPECT_NE(refusal(newer).find("is 7; this program reads version 3"), std::string::npos);
+  constexpr std::size_t lids_begin = 8 + 4 + 6 * 8, state_begins = lids_begin + 2 * 8;
+  std::string lids = bytes;
+  lids[lids_begin + 7] ^= 0x40;  // a huge number
+  EXPECT_NE(refusal(lids).find("closure of lids"), std::string::npos) << refusal(lids);
   for (std::size_t at = state_begins; at + 16 < bytes.size(); at += 7) {
     std::string flipped = bytes;
     flipped[at] = static_cast<char>(flipped[at] ^ 0x10);

@@ -80,7 +80,7 @@ Case expressive_jaw() {
 /// Excitation of the left zygomaticus major.
 double left_zygomatic(const Moved& moved, double time_s) {
   const std::vector<FaceMuscle> muscles = default_face_muscles(moved.patient);
-  const std::vector<double> excitation = moved.motion.expression(time_s);
+  const std::vector<double> excitation = moved.motion.expression(time_s).muscles;
   for (std::size_t m = 0; m < muscles.size(); ++m)
     if (muscles[m].name == "left_zygomaticus_major") return excitation.at(m);
   ADD_FAILURE();
@@ -95,7 +95,7 @@ TEST(Movements, ExpressionsExciteTheMusclesThatTheCaseBrings) {
   const Moved moved(patient, "AU20 0.7; rest");
   const std::vector<FaceMuscle> muscles = muscles_of_face(moved.patient);
   ASSERT_EQ(muscles.front().name, "left_risorius");
-  const std::vector<double> excitation = moved.motion.expression(0.5);
+  const std::vector<double> excitation = moved.motion.expression(0.5).muscles;
   ASSERT_EQ(excitation.size(), muscles.size());
   for (std::size_t m = 0; m < muscles.size(); ++m)
     EXPECT_NEAR(excitation[m], muscles[m].kind == "risorius" ? 0.7 : 0, 1e-9) << muscles[m].name;

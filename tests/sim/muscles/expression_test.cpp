@@ -25,25 +25,25 @@ std::string refusal(const std::string& spec) {
 
 TEST(Expression, ABuiltinOneGrowsToItsStrengthOnItsSide) {
   const Expression smile = make_expression("smile:0.8:left", pair_of_muscles());
-  EXPECT_EQ(smile.at(0), (std::vector<double>{0, 0}));
-  EXPECT_NEAR(smile.at(0.25)[0], 0.4, 1e-12);
-  EXPECT_NEAR(smile.at(3)[0], 0.8, 1e-12);
-  EXPECT_EQ(smile.at(3)[1], 0);
+  EXPECT_EQ(smile.at(0).muscles, (std::vector<double>{0, 0}));
+  EXPECT_NEAR(smile.at(0.25).muscles[0], 0.4, 1e-12);
+  EXPECT_NEAR(smile.at(3).muscles[0], 0.8, 1e-12);
+  EXPECT_EQ(smile.at(3).muscles[1], 0);
 }
 
 TEST(Expression, ActionUnitsAddUpOnTheirSides) {
   const Expression both = make_expression("au12:0.25+smile:0.5:left", pair_of_muscles());
-  EXPECT_NEAR(both.at(1)[0], 0.75, 1e-12);
-  EXPECT_NEAR(both.at(1)[1], 0.25, 1e-12);
-  EXPECT_EQ(make_expression("AU12+smile", pair_of_muscles()).at(1)[0], 1);
+  EXPECT_NEAR(both.at(1).muscles[0], 0.75, 1e-12);
+  EXPECT_NEAR(both.at(1).muscles[1], 0.25, 1e-12);
+  EXPECT_EQ(make_expression("AU12+smile", pair_of_muscles()).at(1).muscles[0], 1);
 }
 
 TEST(Expression, ASideExcitesMusclesInTheMiddle) {
   const std::vector<FaceMuscle> ring = {
       {.name = "orbicularis_oris_marginal", .kind = "orbicularis_oris_marginal", .lines = {}}};
-  EXPECT_NEAR(make_expression("AU23:0.5:left+AU23:0.2:right", ring).at(1)[0], 0.7, 1e-12);
+  EXPECT_NEAR(make_expression("AU23:0.5:left+AU23:0.2:right", ring).at(1).muscles[0], 0.7, 1e-12);
   const ExpressionLevel level{.name = "AU23", .left = 0.2, .right = 0.6};
-  EXPECT_EQ(excitation_of({&level, 1}, ring)[0], 0.6);
+  EXPECT_EQ(excitation_of({&level, 1}, ring).muscles[0], 0.6);
 }
 
 TEST(Expression, NotesKindsThatThePatientLacks) {
@@ -52,6 +52,25 @@ TEST(Expression, NotesKindsThatThePatientLacks) {
   ASSERT_EQ(lacking.notes.size(), 1u);
   EXPECT_NE(lacking.notes[0].find("AU17"), std::string::npos) << lacking.notes[0];
   EXPECT_NE(lacking.notes[0].find("mentalis"), std::string::npos) << lacking.notes[0];
+}
+
+TEST(Expression, ActionUnits43And45CloseTheLidsOfTheirSides) {
+  for (const char* unit : {"AU43", "au45"}) {
+    const Expression wink = make_expression(std::string(unit) + ":0.8:left", pair_of_muscles());
+    EXPECT_FALSE(wink.at(0).lids.any());
+    EXPECT_NEAR(wink.at(0.25).lids.left, 0.4, 1e-12);
+    EXPECT_NEAR(wink.at(3).lids.left, 0.8, 1e-12);
+    EXPECT_EQ(wink.at(3).lids.right, 0);
+    EXPECT_EQ(wink.at(3).muscles, (std::vector<double>{0, 0}));
+    ASSERT_EQ(wink.notes.size(), 1u) << "no muscle is missing";
+    EXPECT_NE(wink.notes[0].find("look only"), std::string::npos);
+    EXPECT_FALSE(expression_moves_upper_face(unit));
+  }
+  const Expression both = make_expression("AU43:0.7+AU45:0.7:right+smile", pair_of_muscles());
+  EXPECT_EQ(both.at(1).lids, (LidClosure{0.7, 1}));
+  EXPECT_EQ(both.at(1).muscles[0], 1);
+  EXPECT_FALSE(make_expression("smile", pair_of_muscles()).at(1).lids.any());
+  EXPECT_NE(refusal("AU45:1.2").find("0 to 1, not 1.2"), std::string::npos);
 }
 
 TEST(Expression, TellsWhetherItMovesTheUpperFace) {
@@ -65,7 +84,9 @@ TEST(FaceWeakness, IsOfASideAMuscleOrBothSides) {
   std::vector<FaceMuscle> muscles = pair_of_muscles();
   muscles.push_back({.name = "ring", .kind = "ring", .lines = {}});
   using Strengths = std::vector<double>;
-  const auto of = [&](std::vector<std::string> specs) { return muscle_strengths(specs, muscles); };
+  const auto of = [&](std::vector<std::string> specs) {
+    return muscle_strengths(specs, muscles).muscles;
+  };
   EXPECT_EQ(of({}), (Strengths{1, 1, 1}));
   EXPECT_EQ(of({"left:0.5"}), (Strengths{0.5, 1, 0.75}));
   EXPECT_EQ(of({"left:0.5", "right:0.5"}), (Strengths{0.5, 0.5, 0.5}));
@@ -75,16 +96,29 @@ TEST(FaceWeakness, IsOfASideAMuscleOrBothSides) {
     EXPECT_THROW(of({wrong}), InputError) << wrong;
 }
 
+TEST(FaceWeakness, LeavesTheLidsOfItsSideOpen) {
+  const auto closed = [&](std::vector<std::string> specs) {
+    return weakened({.muscles = {1, 1}, .lids = {1, 0.5}},
+                    muscle_strengths(specs, pair_of_muscles()));
+  };
+  EXPECT_EQ(closed({}).lids, (LidClosure{1, 0.5}));
+  EXPECT_EQ(closed({"right:0.2"}).lids, (LidClosure{1, 0.1}));
+  EXPECT_EQ(closed({"right:0.2"}).muscles, (std::vector<double>{1, 0.2}));
+  EXPECT_EQ(closed({"left_orbicularis_oculi_palpebral:0"}).lids, (LidClosure{0, 0.5}));
+  EXPECT_EQ(closed({"orbicularis_oculi_palpebral:0.5", "left:0.5"}).lids, (LidClosure{0.25, 0.25}));
+  EXPECT_EQ(closed({"zygomaticus_major:0"}).lids, (LidClosure{1, 0.5}));
+}
+
 TEST(Expression, RisesAndFallsBetweenItsTimesWithoutOvershoot) {
   const std::vector<ExpressionLevel> smile = {{.name = "smile", .left = 1, .right = 0.5}};
   const std::vector<ExpressionKey> keys = {{0, {}}, {1, smile}, {2, smile}, {4, {}}};
   const Expression made = expression_through("smile", keys, pair_of_muscles());
   EXPECT_EQ(made.duration_s, 4);
-  EXPECT_NEAR(made.at(0.25)[0], 3 * 0.0625 - 2 * 0.015625, 1e-12);
-  EXPECT_NEAR(made.at(1.5)[0], 1, 1e-12);
-  EXPECT_NEAR(made.at(3)[1], 0.25, 1e-12);
-  EXPECT_EQ(made.at(9)[0], 0);
-  EXPECT_EQ(made.at(-1)[0], 0);
+  EXPECT_NEAR(made.at(0.25).muscles[0], 3 * 0.0625 - 2 * 0.015625, 1e-12);
+  EXPECT_NEAR(made.at(1.5).muscles[0], 1, 1e-12);
+  EXPECT_NEAR(made.at(3).muscles[1], 0.25, 1e-12);
+  EXPECT_EQ(made.at(9).muscles[0], 0);
+  EXPECT_EQ(made.at(-1).muscles[0], 0);
 }
 
 TEST(Expression, BadOnesAreRefusedByNameAndValue) {
@@ -104,11 +138,22 @@ TEST(Expression, AFileGivesMusclesOrBothSides) {
   write_file(file, "time_s,zygomaticus_major\n2,0\n3,1\n");
   const Expression both = make_expression(file.string(), pair_of_muscles());
   EXPECT_EQ(both.duration_s, 1);
-  EXPECT_NEAR(both.at(0.5)[0], 0.5, 1e-12);
-  EXPECT_EQ(both.at(0.5)[0], both.at(0.5)[1]);
+  EXPECT_NEAR(both.at(0.5).muscles[0], 0.5, 1e-12);
+  EXPECT_EQ(both.at(0.5).muscles[0], both.at(0.5).muscles[1]);
   write_file(file, "time_s,left_zygomaticus_major\n0,0\n1,1.2\n");
   EXPECT_NE(refusal(file.string()).find("1.2"), std::string::npos);
   EXPECT_NE(refusal(file.string()).find("line 3"), std::string::npos);
+  write_file(file, "time_s,AU12,left_AU45,right_orbicularis_oculi_palpebral\n0,0,0,0\n1,1,0.8,1\n");
+  const Expression units = make_expression(file.string(), pair_of_muscles());
+  EXPECT_EQ(units.at(1).muscles, (std::vector<double>{1, 1}));
+  EXPECT_EQ(units.at(1).lids, (LidClosure{0.8, 1}));
+  EXPECT_EQ(units.notes.size(), 1u);
+  EXPECT_FALSE(expression_moves_upper_face(file.string()));
+  write_file(file, "time_s,left_AU1\n0,0\n1,1\n");
+  EXPECT_TRUE(expression_moves_upper_face(file.string()));
+  write_file(file, "time_s,AU45\n0,0\n1,1.2\n");
+  EXPECT_NE(refusal(file.string()).find("line 3"), std::string::npos);
+  EXPECT_NE(refusal(file.string()).find("0 to 1, not 1.2"), std::string::npos);
   write_file(file, "time_s,masseter\n0,0\n1,1\n");
   EXPECT_NE(refusal(file.string()).find("masseter"), std::string::npos);
 }

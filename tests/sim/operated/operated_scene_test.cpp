@@ -93,7 +93,7 @@ TEST(OperatedScene, TheOperatedFaceSmilesByMusclesOnItsPieces) {
   TissueState state = rest;
   TissueWarmStart warm;
   for (int i = 1; i <= 25; ++i)
-    state = solve_tissue(tissue, state, {}, {}, warm, smile.at(0.02 * i));
+    state = solve_tissue(tissue, state, {}, {}, warm, smile.at(0.02 * i).muscles);
   EXPECT_EQ(state.inverted_prisms, 0);
   for (const char* corner : {"left_cheilion", "right_cheilion"}) {
     const Eigen::Vector3d at = *scene.patient.landmarks.find(corner);

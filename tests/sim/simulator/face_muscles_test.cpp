@@ -55,7 +55,7 @@ TissueState state_of(const MuscledFace& face, const std::string& spec, int threa
     std::vector<Pose> poses;
     if (jaw_down_mm > 0)
       poses = {{}, {.R = Eigen::Quaterniond::Identity(), .t = {0, 0, -jaw_down_mm * i / 60}}};
-    state = solve_tissue(*face.model, state, poses, budget, warm, expression.at(0.01 * i));
+    state = solve_tissue(*face.model, state, poses, budget, warm, expression.at(0.01 * i).muscles);
     EXPECT_EQ(state.inverted_prisms, 0) << spec << " at " << i;
     EXPECT_FALSE(state.reused) << spec << " at " << i;
   }

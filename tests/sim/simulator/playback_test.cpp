@@ -105,6 +105,20 @@ TEST(Playback, BuiltInMotionReachesContactAndRecordedMotionIsPlayedUnaltered) {
   EXPECT_EQ(c.poses[mandible_body].t, a.poses[mandible_body].t);
 }
 
+TEST(Playback, LidsAreInTheFrameAndNotInItsHash) {
+  const Scene scene = make_scene(box_patient());
+  Motion winking = nodding();
+  winking.expression = [](double t) { return FaceExcitation{.lids = {0.4 * t, 0.5}}; };
+  Playback plain(scene, nodding(), {}), winks(scene, winking, {});
+  for (const double t : {0.5, 1.2345}) {  // on a step and between two
+    const FrameState with = winks.at(t), without = plain.at(t);
+    EXPECT_NEAR(with.lids.left, 0.4 * t, 1e-12);
+    EXPECT_EQ(with.lids.right, 0.5);
+    EXPECT_FALSE(without.lids.any());
+    EXPECT_EQ(with.state_hash, without.state_hash);
+  }
+}
+
 TEST(Playback, MemoryDoesNotGrowOverTwoThousandFrames) {
   const Scene scene = make_scene(box_patient());
   Motion motion = nodding();

@@ -32,7 +32,7 @@ struct BrowFace {
     TissueState state = rest_tissue(*model);
     TissueWarmStart warm;
     for (int i = 1; i <= 24; ++i) {
-      state = solve_tissue(*model, state, {}, {}, warm, expression.at(0.025 * i));
+      state = solve_tissue(*model, state, {}, {}, warm, expression.at(0.025 * i).muscles);
       EXPECT_EQ(state.inverted_prisms, 0) << spec << " at " << i;
       EXPECT_FALSE(state.reused) << spec << " at " << i;
     }
