@@ -35,7 +35,17 @@ bool excites(const std::vector<ExpressionLevel>& levels) {
 }  // namespace
 
 void FaceMovements::add(const Statement& statement, double start_s) {
+  constexpr double closing_s = 0.1, closed_s = 0.04, opening_s = 0.17;
   std::vector<ExpressionLevel> levels = keys_.back().levels;
+  if (!statement.face.empty() && statement.face.front().momentary) {
+    begin(levels, statement.face.front());
+    const std::vector<ExpressionLevel> before = keys_.back().levels;
+    if (start_s > end_s()) keys_.push_back({start_s, before});
+    keys_.push_back({start_s + closing_s, levels});
+    keys_.push_back({start_s + closing_s + closed_s, levels});
+    keys_.push_back({start_s + closing_s + closed_s + opening_s, before});
+    return;
+  }
   if (statement.verb == Verb::rest && statement.face.empty()) end_others(levels, {});
   for (const FaceChange& change : statement.face) end_others(levels, change);
   for (const FaceChange& change : statement.face) begin(levels, change);

@@ -53,10 +53,12 @@ std::optional<double> number_of(const std::string& word) {
 std::string list_of_verbs() {
   std::string names;
   for (const auto& [name, rule] : verbs()) names += name + ", ";
-  return names + "neutral, set, or an expression (" + list_expressions() + ")";
+  return names + "blink, neutral, set, or an expression (" + list_expressions() + ")";
 }
 
-bool is_expression(const std::string& word) { return word == "neutral" || find_expression(word); }
+bool is_expression(const std::string& word) {
+  return word == "neutral" || word == "blink" || find_expression(word);
+}
 
 bool is_number(const std::string& text) {
   return !text.empty() && (std::isdigit(static_cast<unsigned char>(text[0])) || text[0] == '-' ||
@@ -125,8 +127,9 @@ class Reader {
 /// One expression with its strength and side; `word` is its name.
 FaceChange read_face_change(Reader& reader, const std::string& word) {
   FaceChange change;
+  change.momentary = word == "blink";
   if (word != "neutral") {
-    change.expression = find_expression(word)->name;
+    change.expression = find_expression(change.momentary ? "AU45" : word)->name;
     if (!reader.done() && is_number(reader.peek()))
       change.strength = reader.number("strength", "", 0, 1);
   }
@@ -143,9 +146,13 @@ FaceChange read_face_change(Reader& reader, const std::string& word) {
 std::string read_face(Reader& reader, std::string word, Statement& statement) {
   for (;;) {
     statement.face.push_back(read_face_change(reader, word));
+    const bool blinks = statement.face.front().momentary;
+    if (statement.face.size() > 1 && (blinks || statement.face.back().momentary))
+      reader.refuse(
+          "is a second expression; a blink may be joined with a movement of the jaw only");
     if (reader.done()) return "";
     word = reader.take();
-    if (word == "over") {
+    if (word == "over" && !blinks) {
       statement.face_duration_s = reader.number("over", "s", 0.05, 3600);
       if (reader.done()) return "";
       word = reader.take();

@@ -30,6 +30,7 @@ struct FaceChange {
   std::string expression = {};  // a name of sim/muscles/expression_names.h; empty: relaxed
   double strength = 1;
   bool left = true, right = true;  // sides
+  bool momentary = false;          // "blink": back at once to what was before; the only change
 };
 
 /// One statement of a motion script.
@@ -57,6 +58,7 @@ struct Statement {
 ///   chew left 10 rate 1.4 size 15 width 5
 ///   smile 0.8 over 0.5   an expression or action unit, 0 to 1, both sides; seconds
 ///   AU12 0.8 left and AU16 0.3 right and open 10 over 1    at the same time
+///   blink, blink left    the lids close and open again
 ///   neutral over 1       the face relaxes; so it does at rest
 ///   set bennett 10       before the first movement; any motion parameter
 ///

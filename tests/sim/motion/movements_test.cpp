@@ -135,6 +135,22 @@ TEST(Movements, AnExpressionAndTheJawMoveTogetherWhereJoined) {
   EXPECT_LT(units.incisor(3).norm(), 1e-9);
 }
 
+TEST(Movements, ABlinkClosesTheLidsForAMomentAndKeepsTheExpression) {
+  const Moved moved(expressive_jaw(), "smile; blink 0.8 left and open 10 over 1; AU43; hold 1");
+  const auto lids = [&](double time_s) { return moved.motion.expression(time_s).lids; };
+  EXPECT_FALSE(lids(0.5).any());
+  EXPECT_NEAR(lids(0.55).left, 0.4, 1e-9) << "closing takes 0.1 s";
+  EXPECT_NEAR(lids(0.62).left, 0.8, 1e-9);
+  EXPECT_NEAR(lids(0.64 + 0.085).left, 0.4, 1e-9) << "opening takes 0.17 s";
+  EXPECT_FALSE(lids(0.82).any());
+  for (const double time_s : {0.55, 0.62, 0.7}) EXPECT_EQ(lids(time_s).right, 0);
+  for (const double time_s : {0.5, 0.6, 0.7, 0.9})
+    EXPECT_NEAR(left_zygomatic(moved, time_s), 1, 1e-9) << "the smile stays";
+  EXPECT_NEAR(-moved.incisor(1.5).z(), 10, 1e-3) << "while the jaw opens";
+  EXPECT_NEAR(lids(2.5).left, 1, 1e-9);
+  EXPECT_NEAR(lids(2.5).right, 1, 1e-9) << "AU43 holds them closed";
+}
+
 TEST(Movements, ALongerMotionHasASlowerExpression) {
   MotionSettings slow;
   slow.duration_s = 5;
