@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <limits>
 
+#include "engine/mesh/triangle_tree.h"
 #include "sim/case/case_io.h"
 #include "sim/muscles/default_face_muscles.h"
 #include "sim/muscles/expression.h"
@@ -145,6 +147,55 @@ double lower_lip_up(const MuscledFace& face, const TissueState& state) {
   return (carried_point(*face.model, state, at) -
           carried_point(*face.model, rest_tissue(*face.model), at))
       .z();
+}
+
+/// Distances between the upper and the lower lip of the displayed face at 0, 5 and 10 mm from the
+/// middle, on both sides. `jaw_down`: relaxed, with the jaw a little open; then the lower lip is
+/// what goes with the jaw.
+std::vector<double> lip_distances(const MuscledFace& face, const TissueState& jaw_down,
+                                  const TissueState& state) {
+  const TriMesh& rest = face.patient.find(Role::face)->mesh;
+  const Vector3d stomion = *face.patient.landmarks.find("stomion");
+  std::vector<Eigen::Vector3f> lowered, now;
+  deform_face(*face.model, jaw_down, lowered);
+  deform_face(*face.model, state, now);
+  TriMesh lower, upper;
+  for (const auto& p : now) lower.vertices.push_back(p.cast<double>());
+  upper.vertices = lower.vertices;
+  for (const Eigen::Vector3i& t : rest.triangles) {
+    double down = 0;
+    Vector3d centre = Vector3d::Zero();
+    for (const int v : t) {
+      centre += rest.vertices[static_cast<std::size_t>(v)] / 3;
+      down += (rest.vertices[static_cast<std::size_t>(v)].z() -
+               lowered[static_cast<std::size_t>(v)].z()) /
+              3;
+    }
+    if ((centre - stomion).norm() < 25) (down > 1.25 ? lower : upper).triangles.push_back(t);
+  }
+  const TriangleTree tree(lower);
+  std::vector<double> distances;
+  for (const double aside : {0.0, 5.0, -5.0, 10.0, -10.0}) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const Eigen::Vector3i& t : upper.triangles) {
+      const Vector3d& at_rest = rest.vertices[static_cast<std::size_t>(t[0])];
+      if (std::abs(at_rest.x() - stomion.x() - aside) > 2 || (at_rest - stomion).norm() > 15)
+        continue;
+      Vector3d centre = Vector3d::Zero();
+      for (const int v : t) centre += upper.vertices[static_cast<std::size_t>(v)] / 3;
+      nearest = std::min(nearest, tree.nearest(centre).distance);
+    }
+    distances.push_back(nearest);
+  }
+  return distances;
+}
+
+TEST(FaceMuscles, LipsShutOverAJawThatIsALittleOpenMeetAlongTheMouth) {
+  const MuscledFace& face = muscled_face();
+  const TissueState open = state_of(face, "smile:0", 2, 2.5);
+  for (const double apart : lip_distances(face, open, open)) EXPECT_GT(apart, 2);
+  for (const double apart : lip_distances(face, open, state_of(face, "lips-shut", 2, 2.5)))
+    EXPECT_LT(apart, 0.2);
 }
 
 /// With the jaw a little open, as at rest and in speech.
