@@ -93,9 +93,9 @@ class Ends {
   Ends(const Surface& a, const Surface& b, TraversalFront* front)
       : a_(a.tree.boxes), b_(b.tree.boxes), front_(front) {}
 
-  /// Visits the roots or, where the last query was near, the ends of it that `stays` does not let
-  /// stand by a lower bound of their gap. Triangles are opened; the gap of boxes is looked at
-  /// again.
+  /// Visits the roots or, where the pose is near that of the last query, the ends of that one
+  /// again, except those that `stays` excludes by a lower bound of their gap. Pairs of triangles
+  /// are opened; of boxes the gap is evaluated again.
   template <class Stays, class Visit, class Open>
   void traverse(const fcl::Transform3d& X, const Stays& stays, const Visit& visit,
                 const Open& open) {
@@ -135,8 +135,9 @@ class Ends {
 /// Surfaces farther apart than this have one dominant direction between them; nearer surfaces (a
 /// condyle in its fossa, crowns) are close over an area.
 constexpr double facing_mm = 10;
-// Triangles that share a corner are at the same distance, to rounding; the least is above touch.
-constexpr double same_distance = 1e-12, least_mm2 = 4e-24;
+/// Triangles that share a corner are at the same distance, to rounding: those within this margin
+/// are compared exactly. Above the distance at which triangles touch.
+constexpr double rounding_mm = 2e-12;
 
 /// Traverses the two trees, four pairs of boxes at a time. Pairs of triangles are measured by
 /// triangle_distance, because FCL's triangle distance loses digits, and occasionally the answer,
@@ -215,8 +216,8 @@ class NearestPair {
   double measure(TrianglePair pair) {
     const Triangle in_a = corners(a_, pair.a), in_b = corners(b_, pair.b, X_);
     if (const double along = gap_along(in_a, in_b); along > best_mm) return along;
-    const double bound_mm2 = best.squared_mm2 * (1 + same_distance) + least_mm2;
-    const TriangleGap gap = triangle_distance(in_a, in_b, bound_mm2);
+    const double bound_mm = best_mm + rounding_mm;
+    const TriangleGap gap = triangle_distance(in_a, in_b, bound_mm * bound_mm);
     const double gap_mm = std::sqrt(gap.squared_mm2);
     const bool first = std::pair(pair.a, pair.b) < std::pair(triangles.a, triangles.b);
     if (gap.squared_mm2 > best.squared_mm2 ||

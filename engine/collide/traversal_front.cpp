@@ -1,17 +1,19 @@
 #include "engine/collide/traversal_front.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
 namespace condyle {
 namespace {
 
-constexpr double slow_mm = 0.05;       // a query; faster bodies reach most ends
-constexpr double farthest_mm = 0.1;    // from the last query that used the front
-constexpr double longest_way_mm = 40;  // single precision holds the bounds to 1e-5 mm
+constexpr double slow_mm = 0.05;       // per query; faster bodies reach most ends
+constexpr double max_unused_mm = 0.1;  // from the last query that used the front
+// Single precision holds bounds up to the sum of both to 1e-5 mm.
+constexpr double max_travel_mm = 40, max_gap_mm = 200;
 constexpr double rounding_mm = 2e-5;
 // Ends are divided and never joined: with so many more than at first, a query begins anew.
-constexpr std::size_t most_growth = 2, few_ends = 1000;
+constexpr std::size_t max_growth = 2, extra_ends = 1000;
 
 /// At least the displacement of any point in the box, as its body moves between two poses.
 double displacement_mm(const BoxPair& box, const Eigen::Isometry3d& X,
@@ -37,8 +39,8 @@ bool TraversalFront::begin(const std::vector<BoxPair>& a, const std::vector<BoxP
   travelled_mm_ += step_mm;
   unused_mm_ += step_mm;
   if (!known || !(step_mm < slow_mm)) return false;
-  at_roots_ = last_.empty() || !(unused_mm_ < farthest_mm) || !(travelled_mm_ < longest_way_mm) ||
-              last_.size() > most_growth * first_count_ + few_ends;
+  at_roots_ = last_.empty() || !(unused_mm_ < max_unused_mm) || !(travelled_mm_ < max_travel_mm) ||
+              last_.size() > max_growth * first_count_ + extra_ends;
   if (at_roots_) travelled_mm_ = 0;
   unused_mm_ = 0;
   next_.clear();
@@ -46,7 +48,8 @@ bool TraversalFront::begin(const std::vector<BoxPair>& a, const std::vector<BoxP
 }
 
 void TraversalFront::add(int a, int b, double gap_mm) {
-  next_.push_back({a, b, static_cast<float>(gap_mm + travelled_mm_ - rounding_mm)});
+  next_.push_back(
+      {a, b, static_cast<float>(std::min(gap_mm, max_gap_mm) + travelled_mm_ - rounding_mm)});
 }
 
 void TraversalFront::finish() {

@@ -18,7 +18,7 @@ class TraversalFront {
  public:
   struct End {
     int a = 0, b = 0;    // boxes: twice the index of the node, plus 0 or 1
-    float clear_mm = 0;  // lower bound of the gap, plus the way travelled by then
+    float clear_mm = 0;  // lower bound of the gap, plus the travel by then
   };
 
   /// Begins a query with body B at X in body A. False: this query does not use the front.
@@ -38,8 +38,9 @@ class TraversalFront {
  private:
   const BoxPair *a_ = nullptr, *b_ = nullptr;  // the trees of the last query
   Eigen::Isometry3d X_;                        // its pose
-  double travelled_mm_ = 0;  // since the roots: at least the way of any point of B
-  double unused_mm_ = 0;     // of that, since a query used the front
+  double travelled_mm_ =
+      0;  // since the query that began at the roots: at least that of any point of B
+  double unused_mm_ = 0;  // of that, since a query used the front
   std::vector<End> last_, next_;
   std::size_t first_count_ = 0;  // of the ends after the query that began at the roots
   bool at_roots_ = true;

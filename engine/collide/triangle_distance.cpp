@@ -10,6 +10,7 @@ namespace {
 
 using Vector = Eigen::Vector3d;
 
+constexpr double narrowest = 1e-10;  // of a triangle with a normal: its height over its length
 constexpr double touch_mm2 = 1e-24;  // rounding of coordinates of some 100 mm
 
 Vector nearest_on_segment(const Vector& p, const Vector& a, const Vector& b) {
@@ -34,6 +35,10 @@ struct Prepared {
     for (int k = 0; k < 3; ++k) length2[k] = edge[k].squaredNorm();
     normal = edge[0].cross(edge[1]);
     normal2 = normal.squaredNorm();
+    const double longest2 = std::max({length2[0], length2[1], length2[2]});
+    if (normal2 > narrowest * narrowest * longest2 * longest2) return;
+    normal.setZero();  // of rounding alone
+    normal2 = 0;
   }
 
   double height(const Vector& p) const { return normal.dot(p - corner[0]); }

@@ -1,7 +1,9 @@
 // What a pair's queries keep from pose to pose makes them faster and changes no answer.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <random>
 #include <thread>
 
@@ -87,6 +89,45 @@ TEST(PairCache, ChangesNoAnswerOnAnyPath) {
   EXPECT_GT(near, 250);
 }
 
+// Far from the origin, where coordinates are rounded more, and so near that many triangles are at
+// the same distance to rounding.
+TEST(PairCache, ChangesNoAnswerWhereSurfacesSlideOnEachOther) {
+  const Vector3d a_center(140, -150, 160), b_center(-130, 150, 140);
+  const CollisionMesh a(test::sphere(4, 18, a_center, 0.05)), b(test::sphere(4, 15, b_center, 0.1));
+  std::mt19937_64 random(8);
+  std::uniform_real_distribution<double> one(-1, 1);
+  const Pose X_WA;
+  Vector3d from_a(0, 0, 34);  // to B's center
+  PairCache cache;
+  int went_on = 0, together = 0, near = 0;
+  TrianglePair last;
+  for (int k = 0; k < 600; ++k) {
+    const Eigen::AngleAxisd turn(2e-4 * one(random), Vector3d(one(random), 1, 0.3).normalized());
+    from_a = turn * from_a;
+    Pose X_WB;
+    X_WB.R = Eigen::Quaterniond(Eigen::AngleAxisd(1e-4 * k, Vector3d::UnitX()));
+    const auto place = [&] { X_WB.t = a_center + from_a - X_WB.R * b_center; };
+    place();
+    const double wanted_mm = 0.0055 + 0.0045 * std::sin(0.05 * k);
+    const double gap_mm = distance(a, X_WA, b, X_WB).distance_mm;
+    const double outward_mm = gap_mm > 0 ? std::clamp(wanted_mm - gap_mm, -0.02, 0.02) : 0.01;
+    from_a += outward_mm * from_a.normalized();
+    place();
+    const MeshDistance cold = distance(a, X_WA, b, X_WB);
+    expect_same(distance(a, X_WA, b, X_WB, last), cold);
+    expect_same(distance(a, X_WA, b, X_WB, last, &cache), cold);
+    went_on += !cache.nearest.at_roots();
+    near += cold.distance_mm < 0.02;
+    last = cold.triangles;
+    const auto plain = contacts(a, X_WA, b, X_WB), kept = contacts(a, X_WA, b, X_WB, {}, &cache);
+    ASSERT_EQ(plain.size(), kept.size()) << k;
+    together += !plain.empty();
+  }
+  EXPECT_GT(went_on, 500);
+  EXPECT_GT(near, 300);
+  EXPECT_LT(together, 300);
+}
+
 TEST(PairCache, GoesOnWhereTheLastQueryEnded) {
   const TriMesh mesh = test::sphere(4, 15);
   const BoxTree a(mesh), b(mesh);
@@ -116,19 +157,22 @@ TEST(PairCache, GoesOnWhereTheLastQueryEnded) {
 TEST(PairCache, ThreadsMayShareIt) {
   const CollisionMesh a(test::sphere(4, 18, {0, 0, 0}, 0.05)), b(test::sphere(4, 15));
   PairCache cache;
-  std::vector<std::vector<double>> found(2);
+  std::vector<std::vector<MeshDistance>> found(2);
   const auto run = [&](std::size_t thread) {
     for (int k = 0; k < 200; ++k)
       found[thread].push_back(
-          distance(a, {}, b, test::shift(0.002 * k, 0, 34 - 0.001 * k), {}, &cache).distance_mm);
+          distance(a, {}, b, test::shift(0.002 * k, 0, 34 - 0.001 * k), {}, &cache));
   };
   std::thread other([&] { run(1); });
   run(0);
   other.join();
-  for (int k = 0; k < 200; ++k)
-    EXPECT_EQ(found[0][k],
-              distance(a, {}, b, test::shift(0.002 * k, 0, 34 - 0.001 * k)).distance_mm);
-  EXPECT_EQ(found[0], found[1]);
+  for (int k = 0; k < 200; ++k) {
+    const MeshDistance alone = distance(a, {}, b, test::shift(0.002 * k, 0, 34 - 0.001 * k));
+    expect_same(found[0][k], alone);
+    expect_same(found[1][k], alone);
+    const std::lock_guard held(cache.in_use);  // as by another thread
+    expect_same(distance(a, {}, b, test::shift(0.002 * k, 0, 34 - 0.001 * k), {}, &cache), alone);
+  }
 }
 
 }  // namespace
