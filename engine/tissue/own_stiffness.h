@@ -8,9 +8,10 @@
 
 namespace condyle {
 
-/// How stiffly the mesh holds each node at x while all others stay, N/mm in the units of its
-/// springs: the harmonic mean over the directions, which a node that is soft in one has near that
-/// one's (a thousandth of the stiffest direction's at least). Anchors are not included.
+/// Resistance of each node to a displacement from x while all others stay, N/mm in the units of the
+/// springs: the harmonic mean of the three principal stiffnesses, each at least 0.001 of the
+/// largest. Springs count as at rest and at their full stiffness, also where they are shortened;
+/// anchors and the barrier of small volumes are not included.
 std::vector<double> own_stiffness(const SpringPrismMesh& mesh, const Nodes& x);
 
 /// Limits the stiffness of contact springs to `ratio` times that of the nodes they act on. A

@@ -13,7 +13,7 @@ namespace condyle {
 /// round-trips bit-identically.
 std::string frame_bytes(const FrameState& frame);
 
-/// throws: InputError, with `file` as the name, for bytes that are no frame, a newer version,
+/// throws: InputError, with `file` as the name, for bytes that are no frame, another version,
 /// missing or excess bytes, and a hash that does not match.
 FrameState frame_of_bytes(std::string_view bytes, const std::filesystem::path& file);
 

@@ -6,7 +6,8 @@
 
 namespace condyle {
 
-/// Hash of the bits of every field of a frame except its measured times and the hash itself.
+/// Hash of the bits of every field of a frame except its measured times, the closure of the lids
+/// and the hash itself.
 std::uint64_t state_hash(const FrameState& frame);
 
 }  // namespace condyle

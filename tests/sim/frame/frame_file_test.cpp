@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstring>
 #include <functional>
 #include <random>
 
@@ -108,12 +110,19 @@ TEST(FrameFile, DamagedFilesAreRefusedWithTheirName) {
     EXPECT_NE(refusal(bytes.substr(0, size)).find("jaw.frame"), std::string::npos) << size;
   EXPECT_NE(refusal(bytes + "x").find("1 bytes follow"), std::string::npos);
   EXPECT_NE(refusal("PNG").find("is not a Condyle frame"), std::string::npos);
-  std::string newer = bytes;
-  newer[8] = 7;
-  EXPECT_NE(refusal(newer).find("is 7; this program reads version 3"), std::string::npos);
+  for (const char version : {2, 7}) {
+    std::string other = bytes;
+    other[8] = version;
+    EXPECT_NE(
+        refusal(other).find("is " + std::to_string(version) + "; this program reads version 3"),
+        std::string::npos);
+  }
   constexpr std::size_t lids_begin = 8 + 4 + 6 * 8, state_begins = lids_begin + 2 * 8;
   std::string lids = bytes;
   lids[lids_begin + 7] ^= 0x40;  // a huge number
+  EXPECT_NE(refusal(lids).find("closure of lids"), std::string::npos) << refusal(lids);
+  const double nan = std::nan("");
+  std::memcpy(&lids[lids_begin], &nan, sizeof nan);
   EXPECT_NE(refusal(lids).find("closure of lids"), std::string::npos) << refusal(lids);
   for (std::size_t at = state_begins; at + 16 < bytes.size(); at += 7) {
     std::string flipped = bytes;
