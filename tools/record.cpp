@@ -191,6 +191,17 @@ void add_state_before(const Case& uncut, const Scene& scene, const MotionOptions
   pictures.before = {pictures.operation, &pictures.operation->frame};
 }
 
+/// What is noted of a finished recording. not_before: see expression_before().
+void print_closing_notes(const Motion& motion, const LookNotes& looks,
+                         const std::string& not_before,
+                         const std::optional<FrameRenderer>& pictures) {
+  for (const auto& note : motion.notes) fmt::print(stderr, "note: {}\n", note);
+  for (const std::string& note : {looks.life, looks.lids, not_before})
+    if (!note.empty()) fmt::print(stderr, "note: {}\n", note);
+  if (const auto lacks = pictures ? pictures->facts().shortfall() : ""; !lacks.empty())
+    fmt::print(stderr, "note: {}; --edges fxaa or --supersample 2 smooth them\n", lacks);
+}
+
 int run_record(const RecordOptions& options, const CommonOptions& common) {
   check_early(options);
   make_folder(options.out);
@@ -262,17 +273,14 @@ int run_record(const RecordOptions& options, const CommonOptions& common) {
   if (pictures) json = with_pictures(json, pictures->facts(), looks_alone);
   write_file(options.out / "report.json", json);
   if (motion.muscles) write_file(options.out / "excitations.csv", excitations_csv(motion));
-  if (options.plots)
+  if (options.plots) {
     for (const auto& plot : motion_plots(report.series()))
       write_file(options.out / (plot.name + ".svg"), panels_svg(plot.panels));
+  }
   if (pictures) pictures->finish();
   if (common.json) fmt::print("{}", json);
   if (common.prints_summary()) {
-    for (const auto& note : motion.notes) fmt::print(stderr, "note: {}\n", note);
-    for (const std::string& note : {looks_alone.life, looks_alone.lids, not_before})
-      if (!note.empty()) fmt::print(stderr, "note: {}\n", note);
-    if (const auto lacks = pictures ? pictures->facts().shortfall() : ""; !lacks.empty())
-      fmt::print(stderr, "note: {}; --edges fxaa or --supersample 2 smooth them\n", lacks);
+    print_closing_notes(motion, looks_alone, not_before, pictures);
     fmt::print(stderr, "{}{}", report.text(),
                expression_text(expression, before ? &*before : nullptr));
     if (pictures && pictures->kept() > 0)

@@ -1,5 +1,6 @@
 #include "render/life/living_face.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,6 +12,7 @@ namespace {
 
 using Eigen::Vector3f;
 
+constexpr float closest_eyes_mm = 30;  // distance of both eyeballs, at least
 constexpr float below_jaw_mm = 6, shortest_neck_mm = 30;
 const Vector3f shoulders_breathe(0, -0.4f, 1.2f), notch_breathes(0, -1.2f, 0.5f);  // mm
 constexpr float nostril_breathes_mm = 0.35f, nostril_mm = 6;
@@ -27,18 +29,39 @@ LivingFace::LivingFace(std::span<const Part> parts, std::span<const Vector3f> re
   for (std::size_t i = 0; i < parts.size(); ++i) {
     if (parts[i].role != Role::eyes) continue;
     LivingEyes eyes(parts[i].mesh);
-    for (std::size_t e = 0; e < eyes.eyeballs().size(); ++e)
-      if (auto lid = UpperLid::find(rest, triangles, eyes.eyeballs()[e])) {
-        lids_.push_back(std::move(*lid));
-        lid_eyes_.emplace_back(i, e);
-      }
-    eyeballs_ += eyes.eyeballs().size();
     if (!eyes.eyeballs().empty()) eyes_[i] = std::move(eyes);
   }
+  find_lids(rest, triangles);
   for (auto& eyes : eyes_)
     if (eyes) eyes->grow_from(lids_);
   find_neck(parts, rest);
   if (nose_tip) find_nostrils(rest, nose_tip->cast<float>());
+}
+
+/// Sides count from the middle between the eyeballs; where all are on one side, from the face's.
+void LivingFace::find_lids(std::span<const Vector3f> rest,
+                           std::span<const Eigen::Vector3i> triangles) {
+  Eigen::AlignedBox3f balls, face;
+  for (const auto& eyes : eyes_)
+    if (eyes)
+      for (const Eyeball& ball : eyes->eyeballs()) balls.extend(ball.centre);
+  if (balls.isEmpty()) return;
+  for (const Vector3f& p : rest) face.extend(p);
+  const float middle = (balls.sizes().x() > closest_eyes_mm ? balls : face).center().x();
+  for (std::size_t i = 0; i < eyes_.size(); ++i) {
+    if (!eyes_[i]) continue;
+    for (std::size_t e = 0; e < eyes_[i]->eyeballs().size(); ++e) {
+      const Eyeball& ball = eyes_[i]->eyeballs()[e];
+      const FaceSide side = ball.centre.x() > middle ? FaceSide::left : FaceSide::right;
+      EyeParts& found = side == FaceSide::left ? left_ : right_;
+      found.eyeball = true;
+      if (auto lid = UpperLid::find(rest, triangles, ball, side)) {
+        found.lid = true;
+        lids_.push_back(std::move(*lid));
+        lid_eyes_.emplace_back(i, e);
+      }
+    }
+  }
 }
 
 /// The skin below the jaw, down to its end, which stays with the trunk.
@@ -109,8 +132,18 @@ void LivingFace::move_eyes(std::size_t part, const LifeSigns& signs, std::span<V
 }
 
 std::string LivingFace::lids_shortfall() const {
-  if (eyeballs_ == 0) return "no eyeballs were found";
-  return lids_.empty() ? "no open lids were found" : "";
+  if (!left_.eyeball && !right_.eyeball) return "no eyeballs were found";
+  if (lids_.empty()) return "no open lids were found";
+  const std::string side = open_side();
+  if (side.empty()) return {};
+  const bool has_eyeball = (side == "left" ? left_ : right_).eyeball;
+  return has_eyeball ? "no open lids were found on the " + side
+                     : "no " + side + " eyeball was found";
+}
+
+std::string LivingFace::open_side() const {
+  if (left_.lid == right_.lid) return {};
+  return left_.lid ? "right" : "left";
 }
 
 std::string LivingFace::shortfall() const {
@@ -118,8 +151,11 @@ std::string LivingFace::shortfall() const {
   const auto add = [&](const char* text) {
     lacks += (lacks.empty() ? "" : "; ") + std::string(text);
   };
-  if (!lacks.empty())
-    lacks += eyeballs_ == 0 ? ": eyes and lids do not move" : ": the eyes do not blink";
+  if (const std::string side = open_side(); !side.empty())
+    lacks += ": the " + side + " eye does not blink";
+  else if (!lacks.empty())
+    lacks +=
+        left_.eyeball || right_.eyeball ? ": the eyes do not blink" : ": eyes and lids do not move";
   if (neck_.empty()) add("no neck was found: the whole head turns, and the neck does not breathe");
   if (nostrils_.empty()) add("no landmark pronasale on the face: the nostrils do not breathe");
   return lacks;

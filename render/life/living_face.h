@@ -35,8 +35,10 @@ class LivingFace {
 
   /// What of it the patient lacks, as text; empty for nothing.
   std::string shortfall() const;
-  /// Why lids do not move, as text; empty where they do.
+  /// Why lids do not move, or those of one eye, as text; empty where both do.
   std::string lids_shortfall() const;
+  /// "left" or "right": the side whose lids alone do not move; empty: neither or both.
+  std::string open_side() const;
 
  private:
   struct Member {
@@ -44,6 +46,11 @@ class LivingFace {
     float still;               // 1: it does not follow the head's extension
     Eigen::Vector3f breathes;  // displacement after inspiration, mm
   };
+  /// What was found on a side.
+  struct EyeParts {
+    bool eyeball = false, lid = false;
+  };
+  void find_lids(std::span<const Eigen::Vector3f> rest, std::span<const Eigen::Vector3i> triangles);
   void breathe(const Life& life, const LifeSigns& signs, std::span<Eigen::Vector3f> places) const;
   void find_neck(std::span<const Part> parts, std::span<const Eigen::Vector3f> rest);
   void find_nostrils(std::span<const Eigen::Vector3f> rest, const Eigen::Vector3f& nose_tip);
@@ -52,7 +59,7 @@ class LivingFace {
   std::vector<UpperLid> lids_;
   std::vector<std::pair<std::size_t, std::size_t>> lid_eyes_;  // part and eyeball of each lid
   std::vector<Member> neck_, nostrils_;
-  std::size_t eyeballs_ = 0;
+  EyeParts left_, right_;
 };
 
 }  // namespace condyle

@@ -157,8 +157,8 @@ void UpperLid::taper() {
 
 std::optional<UpperLid> UpperLid::find(std::span<const Vector3f> rest,
                                        std::span<const Eigen::Vector3i> triangles,
-                                       const Eyeball& eyeball) {
-  UpperLid lid(eyeball);
+                                       const Eyeball& eyeball, FaceSide side) {
+  UpperLid lid(eyeball, side);
   TriMesh near;
   const float far = eyeball.radius + near_mm;
   std::vector<int> own(rest.size(), -1);
@@ -181,10 +181,10 @@ std::optional<UpperLid> UpperLid::find(std::span<const Vector3f> rest,
     const auto before = lid.gaps_;
     for (std::size_t c = 1; c + 1 < columns; ++c)
       if (before[c].top > before[c].bottom)
-        for (double Gap::*side : {&Gap::bottom, &Gap::top, &Gap::away}) {
+        for (double Gap::*edge : {&Gap::bottom, &Gap::top, &Gap::away}) {
           const auto& [l, m, r] = std::tie(before[c - 1], before[c], before[c + 1]);
           if (l.top > l.bottom && r.top > r.bottom)
-            lid.gaps_[c].*side = 0.25 * l.*side + 0.5 * m.*side + 0.25 * r.*side;
+            lid.gaps_[c].*edge = 0.25 * l.*edge + 0.5 * m.*edge + 0.25 * r.*edge;
         }
   }
   lid.taper();
@@ -298,7 +298,7 @@ std::vector<float> UpperLid::widening(std::span<const Vector3f> places) const {
 }
 
 double UpperLid::lowered(const LifeSigns& signs) const {
-  const double closure = eyeball_.centre.x() > 0 ? signs.lids.left : signs.lids.right;
+  const double closure = side_ == FaceSide::left ? signs.lids.left : signs.lids.right;
   const double open = signs.alive ? staring_ - lid_per_gaze * signs.gaze_up / widest_ : 0;
   return std::clamp(open + closure * (1 - open), highest, 1.0);
 }

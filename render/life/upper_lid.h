@@ -24,6 +24,9 @@ struct Eyeball {
   float reach(const Eigen::Vector3f& direction, const Eigen::Vector3f& gaze) const;
 };
 
+/// A side of the patient.
+enum class FaceSide { left, right };
+
 /// The upper lid of one eye, which slides on the eyeball: it turns about the line between the
 /// canthi through the eyeball's centre, so that each point keeps its distance from the latter.
 /// The skin between the lid's edge and the fold above it stretches.
@@ -33,7 +36,7 @@ class UpperLid {
   /// degrees lies before the eyeball.
   static std::optional<UpperLid> find(std::span<const Eigen::Vector3f> rest,
                                       std::span<const Eigen::Vector3i> triangles,
-                                      const Eyeball& eyeball);
+                                      const Eyeball& eyeball, FaceSide side);
 
   const Eyeball& eyeball() const { return eyeball_; }
 
@@ -74,7 +77,7 @@ class UpperLid {
     int vertex;
     double along, up;
   };
-  UpperLid(const Eyeball& eyeball) : eyeball_(eyeball) {}
+  UpperLid(const Eyeball& eyeball, FaceSide side) : eyeball_(eyeball), side_(side) {}
   Place place_of(const Eigen::Vector3d& p) const;
   Eigen::Vector3d point_at(const Place& place) const;
   Gap gap_at(double along) const;
@@ -88,6 +91,7 @@ class UpperLid {
   std::vector<float> widening(std::span<const Eigen::Vector3f> places) const;
 
   Eyeball eyeball_;
+  FaceSide side_;
   Eigen::Vector3d axis_ = {1, 0, 0}, ahead_ = {0, -1, 0}, up_ = {0, 0, 1};
   std::vector<Gap> gaps_;        // by place along the axis
   double first_ = 0, last_ = 0;  // the canthi, mm along the axis

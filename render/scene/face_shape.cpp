@@ -53,9 +53,10 @@ std::string lids_note(std::span<const Part> parts) {
   const Part* face = face_among(parts);
   if (!face) return {};
   const TriMesh& mesh = face->mesh;
-  const std::string lacks =
-      LivingFace(parts, float_positions(mesh), mesh.triangles, std::nullopt).lids_shortfall();
-  return lacks.empty() ? "" : "expressions do not close the lids: " + lacks;
+  const LivingFace living(parts, float_positions(mesh), mesh.triangles, std::nullopt);
+  const std::string lacks = living.lids_shortfall(), side = living.open_side();
+  if (lacks.empty()) return {};
+  return "expressions do not close the " + (side.empty() ? "" : side + " ") + "lids: " + lacks;
 }
 
 void FaceShape::place(std::vector<Eigen::Vector3f> places) {
@@ -73,7 +74,7 @@ void FaceShape::send(std::span<const Part> parts, std::span<Drawable> drawables,
   if (shows_life(parts, settings)) {
     look.life = settings.life;
     look.signs = life_signs(moment.time_s, moment.X_CM);
-    look.signs->lids = wider_closed(look.signs->lids, moment.lids);
+    look.signs->lids = max_closure(look.signs->lids, moment.lids);
   } else if (moment.lids.any()) {
     look.signs = LifeSigns{.lids = moment.lids, .alive = false};
   }

@@ -22,7 +22,8 @@ bool shows_life(std::span<const Part> parts, const PictureSettings& settings);
 /// For a report of pictures with life switched on: that it is for looks alone, and what of it is
 /// not shown.
 std::string life_note(std::span<const Part> parts, const PictureSettings& settings);
-/// Why an expression does not close the lids of the patient, as a sentence; empty: it does.
+/// Why an expression does not close the lids of the patient, or those of one eye, as a sentence;
+/// empty: it closes both.
 std::string lids_note(std::span<const Part> parts);
 
 /// Vertices of a mesh.

@@ -86,9 +86,11 @@ std::uint64_t shown_hash(const ViewRecording& subject, const PicturePlan& plan) 
                     plan.caption,
                     plan.map,
                     plan.wipe.value_or(-1)};
-  if (const auto& kept = plan.before)
-    shown["kept"] = {kept->state_hash, kept->lids.left, kept->lids.right,
+  if (const auto& kept = plan.before) {
+    shown["kept"] = {kept->state_hash,
                      pose(kept->poses[subject.patient->scene.patient.jaw.lower_arch])};
+    if (kept->lids.any()) shown["kept_lids"] = {kept->lids.left, kept->lids.right};
+  }
   if (const auto& operation = plan.operation) {
     for (const RemovedPart& removed : operation->removed)
       shown["removed"].push_back(mesh_hash(removed.part.mesh));

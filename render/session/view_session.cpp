@@ -278,14 +278,19 @@ WindowScene ViewSession::scene_of_patient() const {
   return scene;
 }
 
-/// A sentence on what the sliders of the face ask for and the patient lacks; empty: nothing.
+/// A sentence on what the sliders of the face ask for, or the lids of the motion, and the patient
+/// lacks; empty: nothing.
 std::string ViewSession::lacking_for_face() {
+  if (!state_.patient->scene.tissue) return {};
+  std::string lacking;
+  bool closes_lids = state_.motion && motion_closes_lids_;
   const auto& expression = state_.front_end.view().expression;
-  if (expression.empty() || state_.scene.expressions.empty() || !state_.patient->scene.tissue)
-    return {};
-  const auto& muscles = face_muscles_of(*state_.patient->scene.tissue);
-  std::string lacking = missing_kinds(expression, muscles);
-  if (!excitation_of(expression, muscles).lids.any()) return lacking;
+  if (!expression.empty() && !state_.scene.expressions.empty()) {
+    const auto& muscles = face_muscles_of(*state_.patient->scene.tissue);
+    lacking = missing_kinds(expression, muscles);
+    closes_lids |= excitation_of(expression, muscles).lids.any();
+  }
+  if (!closes_lids) return lacking;
   if (lids_note_.of.lock() != state_.patient)
     lids_note_ = {state_.patient, lids_note(state_.patient->scene.patient.parts)};
   if (!lacking.empty() && !lids_note_.text.empty()) lacking += "; ";
@@ -369,6 +374,7 @@ void ViewSession::take_motion() {
   state_.try_or_report("Cannot make this motion", [&] {
     auto taken = moving_.take();
     motion_lifts_brows_ = taken && motion_moves_upper_face((*taken)->choice.spec);
+    motion_closes_lids_ = taken && motion_closes_lids((*taken)->choice.spec);
     made = std::move(taken);
   });
   if (!made) return keep_motion();

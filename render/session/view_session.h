@@ -115,13 +115,14 @@ class ViewSession {
   CtImport ct_;
   PlanSession plan_;
   Job<std::shared_ptr<const SessionMotion>> moving_;
-  std::string lacking_for_face_;  // as noted of the sliders of the face
+  std::string lacking_for_face_;  // as noted of the face
   struct LidsNote {
     std::weak_ptr<const SessionPatient> of;
     std::string text;
   };
-  LidsNote lids_note_;               // from the first slider that closes lids on
+  LidsNote lids_note_;               // from the first slider or motion that closes lids on
   bool motion_lifts_brows_ = false;  // the present motion, see TissueSettings::upper_face
+  bool motion_closes_lids_ = false;
   std::shared_ptr<const SessionPatient> face_asked_for_;  // when the upper face was added
   Job<bool> readying_;                                    // bones to slide
   Job<Saved> saving_;

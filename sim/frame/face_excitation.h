@@ -14,7 +14,7 @@ struct LidClosure {
 };
 
 /// The larger closure of each side.
-inline LidClosure wider_closed(const LidClosure& a, const LidClosure& b) {
+inline LidClosure max_closure(const LidClosure& a, const LidClosure& b) {
   return {std::max(a.left, b.left), std::max(a.right, b.right)};
 }
 

@@ -23,8 +23,12 @@ void begin(std::vector<ExpressionLevel>& levels, const FaceChange& change) {
   auto found = std::find_if(levels.begin(), levels.end(),
                             [&](const auto& level) { return level.name == change.expression; });
   if (found == levels.end()) found = levels.insert(found, {.name = change.expression});
-  if (change.left) found->left = change.strength;
-  if (change.right) found->right = change.strength;
+  // A blink does not open lids that are held further closed.
+  const auto level_after = [&](double level) {
+    return change.momentary ? std::max(level, change.strength) : change.strength;
+  };
+  if (change.left) found->left = level_after(found->left);
+  if (change.right) found->right = level_after(found->right);
 }
 
 bool excites(const std::vector<ExpressionLevel>& levels) {

@@ -13,7 +13,7 @@ class FaceMovements {
  public:
   /// Changes the face from `start_s` on, not before the last change has ended: an expression
   /// replaces what its sides showed, an action unit changes only itself; "rest" relaxes the face. A
-  /// blink closes the lids in 0.1 s and opens them in 0.17 s, as in LifeSigns.
+  /// blink closes the lids in 0.1 s and opens them in 0.17 s, as in LifeSigns, to where they were.
   void add(const Statement& statement, double start_s);
 
   /// When the last change ends; 0: there is none.

@@ -297,9 +297,10 @@ Motion motion_of(const std::string& spec, const Case& patient, const ContactMode
   refuse_motion(spec);
 }
 
-}  // namespace
-
-bool motion_moves_upper_face(const std::string& name) {
+/// Whether a level of an expression in the motion's words is such; false for what is no motion in
+/// words.
+template <class Test>
+bool any_level_of_words(const std::string& name, const Test& is_such) {
   // The motion that muscles follow keeps its expressions.
   constexpr std::string_view inverse = "inverse:";
   const std::string spec = name.starts_with(inverse) ? name.substr(inverse.size()) : name;
@@ -309,11 +310,24 @@ bool motion_moves_upper_face(const std::string& name) {
   if (file ? ending_of(spec) != ".motion" : !is_motion_script(spec)) return false;
   const MotionScript script =
       parse_motion_script(file ? read_file(spec, largest_script) : spec, file ? spec : "motion");
-  return std::any_of(script.statements.begin(), script.statements.end(), [](const Statement& one) {
-    return std::any_of(one.face.begin(), one.face.end(), [](const FaceChange& change) {
-      const ExpressionLevel level{.name = change.expression, .left = change.strength};
-      return moves_upper_face({&level, 1});
+  return std::any_of(script.statements.begin(), script.statements.end(), [&](const Statement& one) {
+    return std::any_of(one.face.begin(), one.face.end(), [&](const FaceChange& change) {
+      return is_such(ExpressionLevel{.name = change.expression, .left = change.strength});
     });
+  });
+}
+
+}  // namespace
+
+bool motion_moves_upper_face(const std::string& name) {
+  return any_level_of_words(name, [](const ExpressionLevel& level) {
+    return moves_upper_face({&level, 1});
+  });
+}
+
+bool motion_closes_lids(const std::string& name) {
+  return any_level_of_words(name, [](const ExpressionLevel& level) {
+    return excitation_of({&level, 1}, {}).lids.any();
   });
 }
 

@@ -145,22 +145,24 @@ FaceChange read_face_change(Reader& reader, const std::string& word) {
 /// that follows a last "and"; empty: none.
 std::string read_face(Reader& reader, std::string word, Statement& statement) {
   for (;;) {
+    if (!statement.face.empty() && (word == "blink" || statement.face.front().momentary))
+      reader.refuse("a blink may be joined with a movement of the jaw only");
     statement.face.push_back(read_face_change(reader, word));
     const bool blinks = statement.face.front().momentary;
-    if (statement.face.size() > 1 && (blinks || statement.face.back().momentary))
-      reader.refuse(
-          "is a second expression; a blink may be joined with a movement of the jaw only");
     if (reader.done()) return "";
     word = reader.take();
-    if (word == "over" && !blinks) {
+    if (word == "over" && blinks) reader.refuse("a blink takes no duration");
+    if (word == "over") {
       statement.face_duration_s = reader.number("over", "s", 0.05, 3600);
       if (reader.done()) return "";
       word = reader.take();
     }
     if (word != "and")
       reader.refuse(
-          "is not understood; a strength of 0 to 1 may be followed by left or right, over (s), and "
-          "another expression or movement after \"and\"");
+          blinks ? "is not understood; a strength of 0 to 1 may be followed by left or right, and "
+                   "a movement of the jaw after \"and\""
+                 : "is not understood; a strength of 0 to 1 may be followed by left or right, over "
+                   "(s), and another expression or movement after \"and\"");
     if (reader.done()) reader.refuse("must be followed by an expression or a movement");
     word = reader.take();
     if (is_expression(word)) continue;

@@ -18,8 +18,7 @@ namespace {
 
 constexpr double held_until_s = 1;
 constexpr std::size_t max_expression_bytes = std::size_t{16} << 20;
-constexpr const char* lids_are_drawn =
-    "look only: closing lids are in pictures alone, and nothing measured depends on them";
+constexpr const char* lids_are_drawn = "lid closure is drawn only; no measurement depends on it";
 
 std::filesystem::path file_of(const std::string& spec) { return spec; }
 
@@ -65,10 +64,23 @@ SidedName sided_name(std::string_view name) {
   return {.name = name};
 }
 
+/// The level of an expression or action unit by a value of 1 in the column of a file with this
+/// name; none: the column is for muscles.
+std::optional<ExpressionLevel> level_of_column(std::string_view column) {
+  const auto [name, left, right] = sided_name(column);
+  const NamedExpression* expression = find_expression(name);
+  if (!expression) return std::nullopt;
+  return ExpressionLevel{expression->name, left ? 1.0 : 0.0, right ? 1.0 : 0.0};
+}
+
 /// What the column of a file with this name excites by a value of 1; none: nothing has the name.
 std::optional<FaceExcitation> excited_by(std::string_view column,
                                          std::span<const FaceMuscle> muscles) {
   FaceExcitation excited{.muscles = std::vector<double>(muscles.size(), 0.0)};
+  if (const auto [name, left, right] = sided_name(column); name == lid_closer) {
+    excited.lids = {left ? 1.0 : 0.0, right ? 1.0 : 0.0};
+    return excited;
+  }
   bool found = false;
   for (std::size_t m = 0; m < muscles.size(); ++m) {
     if (muscles[m].name != column && muscles[m].kind != column) continue;
@@ -76,15 +88,34 @@ std::optional<FaceExcitation> excited_by(std::string_view column,
     found = true;
   }
   if (found) return excited;
-  const auto [name, left, right] = sided_name(column);
-  if (name == lid_closer) {
-    excited.lids = {left ? 1.0 : 0.0, right ? 1.0 : 0.0};
-    return excited;
+  const std::optional<ExpressionLevel> level = level_of_column(column);
+  if (!level) return std::nullopt;
+  return excitation_of({&*level, 1}, muscles);
+}
+
+[[noreturn]] void refuse_column(const std::filesystem::path& file, const std::string& header,
+                                const std::string& column, std::span<const FaceMuscle> muscles) {
+  std::string known;
+  for (const FaceMuscle& muscle : muscles)
+    if (sided_name(muscle.name).name != lid_closer) known += muscle.name + ", ";
+  throw InputError(
+      file, header,
+      fmt::format("\"{}\" is not a muscle of the face, expression or action unit; valid ones are "
+                  "muscles (without left_ or right_: both sides): {}left_{}, right_{}; "
+                  "expressions, also with left_ or right_: {}",
+                  shortened(column), known, lid_closer, lid_closer, list_expressions()));
+}
+
+/// Adds a level to those of the same name.
+void add_level(std::vector<ExpressionLevel>& levels, const ExpressionLevel& level) {
+  const auto same = std::find_if(levels.begin(), levels.end(),
+                                 [&](const auto& other) { return other.name == level.name; });
+  if (same == levels.end()) {
+    levels.push_back(level);
+  } else {
+    same->left = std::max(same->left, level.left);
+    same->right = std::max(same->right, level.right);
   }
-  const NamedExpression* expression = find_expression(name);
-  if (!expression) return std::nullopt;
-  const ExpressionLevel level{expression->name, left ? 1.0 : 0.0, right ? 1.0 : 0.0};
-  return excitation_of({&level, 1}, muscles);
 }
 
 /// The values of a column of a file, and what it excites.
@@ -120,19 +151,11 @@ Expression expression_of_file(const std::string& spec, std::span<const FaceMuscl
   for (std::size_t row = 0; row < table.rows(); ++row)
     times.push_back(table.at(row, time) - table.at(0, time));
   std::vector<ExcitationColumn> columns;
+  std::vector<ExpressionLevel> levels;  // of the columns for expressions that are not 0 throughout
   for (std::size_t c = 0; c < names.size(); ++c) {
     if (c == time) continue;
     std::optional<FaceExcitation> excited = excited_by(names[c], muscles);
-    if (!excited) {
-      std::string known;
-      for (const FaceMuscle& muscle : muscles) known += muscle.name + ", ";
-      throw InputError(
-          file, header,
-          fmt::format("\"{}\" is not a muscle of the face, expression or action unit; "
-                      "valid ones, also without left_ or right_ for both sides, are "
-                      "{}left_{}, right_{}, {}",
-                      shortened(names[c]), known, lid_closer, lid_closer, list_expressions()));
-    }
+    if (!excited) refuse_column(file, header, names[c], muscles);
     std::vector<double> values;
     for (std::size_t row = 0; row < table.rows(); ++row) {
       const double value = table.at(row, c);
@@ -141,12 +164,17 @@ Expression expression_of_file(const std::string& spec, std::span<const FaceMuscl
                          fmt::format("an excitation must be 0 to 1, not {}", value));
       values.push_back(value);
     }
+    if (const auto level = level_of_column(names[c]);
+        level && *std::max_element(values.begin(), values.end()) > 0)
+      add_level(levels, *level);
     columns.push_back(
         {ExcitationCurve(times, std::move(values), Interpolation::smooth), std::move(*excited)});
   }
   const bool closes_lids = std::any_of(
       columns.begin(), columns.end(), [](const auto& column) { return column.excited.lids.any(); });
   std::vector<std::string> notes;
+  if (std::string missing = missing_kinds(levels, muscles); !missing.empty())
+    notes.push_back(std::move(missing));
   if (closes_lids) notes.emplace_back(lids_are_drawn);
   return {.name = file.filename().string(),
           .duration_s = times.back(),

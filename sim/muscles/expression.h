@@ -16,7 +16,7 @@ struct Expression {
   double duration_s = 0;
   /// One value for each muscle; constant beyond the ends.
   std::function<FaceExcitation(double time_s)> at;
-  std::vector<std::string> notes = {};  // on muscles that the patient lacks
+  std::vector<std::string> notes = {};  // on missing muscles, and on lids, which are only drawn
 };
 
 /// Duration of the rise to an expression, and of the return to rest. source: the first stage of a

@@ -129,6 +129,7 @@ FaceExcitation excitation_of(std::span<const ExpressionLevel> levels,
       if (kind == lid_closer) {
         sum.lids.left += value * level.left;
         sum.lids.right += value * level.right;
+        continue;  // also where the case has such a muscle: lids are drawn only
       }
       for (std::size_t m = 0; m < muscles.size(); ++m) {
         if (muscles[m].kind != kind) continue;

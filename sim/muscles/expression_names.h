@@ -11,7 +11,8 @@
 
 namespace condyle {
 
-/// Kind of the muscle that closes the lids, which patients have without a line: see LidClosure.
+/// Kind of the muscle that closes the lids, which needs no line in a patient: see LidClosure. No
+/// expression excites a muscle of this kind.
 inline constexpr std::string_view lid_closer = "orbicularis_oculi_palpebral";
 
 /// Excitation of a kind of muscle of the face, 0 to 1.

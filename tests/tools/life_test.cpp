@@ -124,7 +124,7 @@ TEST(LidsOfAnExpression, AreInPicturesAlone) {
   EXPECT_TRUE(alike(last(closed), last(left), 0, left_half));
   EXPECT_TRUE(same_bytes(last(palsied), last(left))) << "a palsied lid stays open";
   const auto report = nlohmann::json::parse(read_text(closed / "report.json"));
-  EXPECT_NE(report["motion"]["notes"].dump().find("look only"), std::string::npos);
+  EXPECT_NE(report["motion"]["notes"].dump().find("lid closure is drawn only"), std::string::npos);
   EXPECT_FALSE(report["pictures"].contains("lids")) << "nothing is missing";
 
   const std::string frame = read_text(closed / "frames/000002.png");

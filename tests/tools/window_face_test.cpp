@@ -225,5 +225,16 @@ TEST_F(WindowSession, NotesSayWhyBrowsDoNotMoveAndWhichMusclesAreMissing) {
   EXPECT_EQ(wait_for_end(), 0);
 }
 
+TEST_F(WindowSession, ANoteSaysThatABlinkOfTheMotionLeavesTheLidsOpen) {
+  write_patient_without_eyes(folder_);
+  start({folder_ / "case", "--motion", "blink; hold 1"});
+  const std::string open = "expressions do not close the lids: no eyeballs were found";
+  EXPECT_TRUE(wait_until([&](const Json& s) { return idle(s) && notes_with(s, open) == 1; }, 120))
+      << state()["notes"].dump();
+  EXPECT_EQ(state().value("trouble", ""), "");
+  EXPECT_TRUE(press("ctrl+q"));
+  EXPECT_EQ(wait_for_end(), 0);
+}
+
 }  // namespace
 }  // namespace condyle::test

@@ -40,4 +40,14 @@ inline TriMesh open_lids(int around = 120) {
   return mesh;
 }
 
+/// A mesh about the left eye and a copy of another one about the right eye.
+inline TriMesh about_both_eyes(TriMesh left, const TriMesh& right) {
+  const int first = static_cast<int>(left.vertices.size());
+  for (const auto& p : right.vertices)
+    left.vertices.push_back(p - Eigen::Vector3d(2 * eye_centre.x(), 0, 0));
+  for (const auto& t : right.triangles)
+    left.triangles.emplace_back(t[0] + first, t[1] + first, t[2] + first);
+  return left;
+}
+
 }  // namespace condyle

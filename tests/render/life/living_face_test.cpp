@@ -122,6 +122,41 @@ TEST_F(LivingPatient, AnExpressionClosesTheEyesOfItsSidesAndMovesNothingElse) {
   EXPECT_GT(lashes, 100);
 }
 
+TEST_F(LivingPatient, ALidClosesOnItsSideWhereverTheOriginIs) {
+  for (const double shift : {150.0, -150.0})
+    for (const bool both : {true, false}) {
+      std::vector<Part> parts = {face_, eyes_};
+      for (Part& part : parts)
+        for (auto& p : part.mesh.vertices) p.x() += shift;
+      const TriMesh& eyes = parts[1].mesh;
+      const auto is_right = [&](const Eigen::Vector3i& t) {
+        return eyes.vertices[static_cast<std::size_t>(t[0])].x() < shift;
+      };
+      if (!both) std::erase_if(parts[1].mesh.triangles, is_right);
+      const auto rest = floats(parts[0].mesh);
+      const LivingFace living(parts, rest, parts[0].mesh.triangles, std::nullopt);
+      EXPECT_EQ(living.lids_shortfall(), both ? "" : "no right eyeball was found");
+      /// Vertices left and right of the middle of the face that move.
+      const auto moved = [&](const LidClosure& lids) {
+        auto places = rest;
+        living.move_lids({.lids = lids, .alive = false}, places);
+        std::pair<int, int> count;
+        for (std::size_t v = 0; v < places.size(); ++v)
+          if (places[v] != rest[v]) ++(rest_[v].x() > 0 ? count.first : count.second);
+        return count;
+      };
+      const auto by_left = moved({1, 0}), by_right = moved({0, 1});
+      EXPECT_GT(by_left.first, 50) << shift;
+      EXPECT_EQ(by_left.second, 0) << shift;
+      EXPECT_EQ(by_right.first, 0) << shift;
+      if (both) {
+        EXPECT_GT(by_right.second, 50) << shift;
+      } else {
+        EXPECT_EQ(by_right.second, 0) << "it has no right eyeball";
+      }
+    }
+}
+
 TEST_F(LivingPatient, ClosedLidsCoverTheCaruncleWithoutAStep) {
   // The deepest step between lines of sight 0.25 mm apart, nasal of the left eye's lashes.
   const auto step = [&](const LifeSigns& signs) {

@@ -27,7 +27,7 @@ struct Eye {
   Eye() {
     for (const auto& p : skin.vertices) rest.push_back(p.cast<float>());
     if (!eyes.eyeballs().empty())
-      lid = UpperLid::find(rest, skin.triangles, eyes.eyeballs().front());
+      lid = UpperLid::find(rest, skin.triangles, eyes.eyeballs().front(), FaceSide::left);
   }
   std::vector<Vector3f> moved(double lowered, const Vector3f& gaze = ahead) const {
     auto places = rest;
@@ -134,25 +134,32 @@ TEST(UpperLidTest, FollowsTheGazeDownAndUp) {
     EXPECT_EQ(eye.lid->lowered({.lids = {1, 1}, .gaze_up = up}), 1);
 }
 
+TEST(UpperLidTest, ClosesByTheClosureOfItsSideWhereverItLies) {
+  const Eye eye;
+  ASSERT_TRUE(eye.lid);
+  const auto right =
+      UpperLid::find(eye.rest, eye.skin.triangles, eye.lid->eyeball(), FaceSide::right);
+  ASSERT_TRUE(right);
+  const LifeSigns signs{.lids = {0.3, 0.8}, .alive = false};
+  EXPECT_NEAR(eye.lid->lowered(signs), 0.3, 1e-12);
+  EXPECT_NEAR(right->lowered(signs), 0.8, 1e-12);
+}
+
 TEST(UpperLidTest, ThereIsNoneWhereTheSkinIsClosedOrFarFromTheEye) {
   const Eye eye;
   ASSERT_TRUE(eye.lid);
   const TriMesh closed = ball(centre, 12.2, 60);
   std::vector<Vector3f> places;
   for (const auto& p : closed.vertices) places.push_back(p.cast<float>());
-  EXPECT_FALSE(UpperLid::find(places, closed.triangles, eye.lid->eyeball()));
+  EXPECT_FALSE(UpperLid::find(places, closed.triangles, eye.lid->eyeball(), FaceSide::left));
   Eyeball elsewhere = eye.lid->eyeball();
   elsewhere.centre.x() -= 62;
-  EXPECT_FALSE(UpperLid::find(eye.rest, eye.skin.triangles, elsewhere));
+  EXPECT_FALSE(UpperLid::find(eye.rest, eye.skin.triangles, elsewhere, FaceSide::left));
 }
 
 TEST(LivingEyesTest, BothEyesLookAtOnePoint) {
-  TriMesh both = eyeball(), right = eyeball();
-  for (auto& p : right.vertices) p.x() -= 62;
-  const int first = static_cast<int>(both.vertices.size());
-  both.vertices.insert(both.vertices.end(), right.vertices.begin(), right.vertices.end());
-  for (const auto& t : right.triangles)
-    both.triangles.emplace_back(t[0] + first, t[1] + first, t[2] + first);
+  const TriMesh both = about_both_eyes(eyeball(), eyeball());
+  const std::size_t first = both.vertices.size() / 2;
   const LivingEyes eyes(both);
   ASSERT_EQ(eyes.eyeballs().size(), 2u);
   const LifeSigns signs{.gaze_left = 0.1, .gaze_up = -0.05};
@@ -173,7 +180,7 @@ TEST(LivingEyesTest, BothEyesLookAtOnePoint) {
   const auto rest = places;
   eyes.move(signs, {}, places, normals);
   for (std::size_t v = 0; v < places.size(); ++v) {
-    const Vector3f c = v < static_cast<std::size_t>(first) ? l : r;
+    const Vector3f c = v < first ? l : r;
     EXPECT_NEAR((places[v] - c).norm(), (rest[v] - c).norm(), 1e-3f);
   }
   EXPECT_LT((normals[0] - to_l).norm(), 1e-4f);

@@ -9,9 +9,10 @@ namespace {
 
 using LifePictures = WithContext;
 
-/// Eyeballs in blue between the lids of a skin.
+/// Both eyeballs in blue between the lids of a skin.
 std::vector<Part> eye_and_lids(int around = 120) {
-  TriMesh eye = eyeball(), skin = open_lids(around);
+  const TriMesh lids = open_lids(around);
+  TriMesh eye = about_both_eyes(eyeball(), eyeball()), skin = about_both_eyes(lids, lids);
   eye.colors.assign(eye.vertices.size(), {0.1f, 0.2f, 1});
   skin.colors.assign(skin.vertices.size(), {0.8f, 0.6f, 0.5f});
   return {make_part("face", Role::face, skin), make_part("eyes", Role::eyes, eye)};
@@ -24,6 +25,7 @@ PictureSettings alive() {
   return settings;
 }
 
+/// Sees the left eye.
 Camera eye_camera() {
   Camera camera = front_camera(26);
   camera.target = eye_centre;
@@ -100,8 +102,16 @@ FrameState frame_closing(const LidClosure& lids, double time_s = 0) {
   return frame;
 }
 
+/// Of all channels, levels.
+int largest_difference(const Image& a, const Image& b) {
+  int most = 0;
+  for (std::size_t i = 0; i < a.rgba.size(); ++i)
+    most = std::max(most, std::abs(int{a.rgba[i]} - int{b.rgba[i]}));
+  return most;
+}
+
 TEST_F(LifePictures, AnExpressionClosesTheLidsWithLifeAndWithout) {
-  const std::vector<Part> parts = eye_and_lids();  // a left eye
+  const std::vector<Part> parts = eye_and_lids();
   SceneRenderer renderer(parts);
   auto off = alive();
   off.life.reset();
@@ -112,12 +122,13 @@ TEST_F(LifePictures, AnExpressionClosesTheLidsWithLifeAndWithout) {
   const Image open = picture(frame_at(0), off);
   const int blue = blue_in(open);
   EXPECT_EQ(blue_in(picture(frame_closing({1, 0}), off)), 0);
-  EXPECT_EQ(picture(frame_closing({0, 1}), off).rgba, open.rgba) << "the other eye's lid";
+  EXPECT_LE(largest_difference(picture(frame_closing({0, 1}), off), open), 1)
+      << "the other eye's lid, but for the rounding of light";
   const int half = blue_in(picture(frame_closing({0.5, 0}), off));
   EXPECT_GT(half, 0.2 * blue);
   EXPECT_LT(half, 0.8 * blue);
   EXPECT_EQ(picture(frame_at(0), off).rgba, open.rgba) << "in any order";
-  // With life the wider closure of both counts.
+  // With life the larger closure of both is drawn.
   EXPECT_EQ(blue_in(picture(frame_closing({1, 0}), alive())), 0);
   const double blinking_s = time_of(0.6);
   EXPECT_EQ(picture(frame_closing({0.3, 0.3}, blinking_s), alive()).rgba,
@@ -132,8 +143,16 @@ TEST(LidsNote, SaysWhyTheLidsOfAPatientDoNotClose) {
   std::vector<Part> parts = eye_and_lids();
   EXPECT_EQ(lids_note(parts), "");
   EXPECT_NE(lids_note({parts.data(), 1}).find("no eyeballs were found"), std::string::npos);
-  parts[0].mesh = ball(eye_centre, 12.2, 60);
-  EXPECT_NE(lids_note(parts).find("no open lids were found"), std::string::npos);
+  const TriMesh closed = ball(eye_centre, 12.2, 60);
+  parts[0].mesh = about_both_eyes(closed, closed);
+  EXPECT_EQ(lids_note(parts), "expressions do not close the lids: no open lids were found");
+  parts[0].mesh = about_both_eyes(closed, open_lids());
+  EXPECT_EQ(lids_note(parts),
+            "expressions do not close the left lids: no open lids were found on the left");
+  parts[0].mesh = about_both_eyes(open_lids(), open_lids());
+  parts[1].mesh = eyeball();
+  EXPECT_EQ(lids_note(parts),
+            "expressions do not close the right lids: no right eyeball was found");
 }
 
 /// Roughness of the middle of a picture across and along, from second differences of its green.

@@ -151,6 +151,22 @@ TEST(Movements, ABlinkClosesTheLidsForAMomentAndKeepsTheExpression) {
   EXPECT_NEAR(lids(2.5).right, 1, 1e-9) << "AU43 holds them closed";
 }
 
+TEST(Movements, ABlinkDoesNotOpenLidsThatAreHeldFurtherClosed) {
+  const Moved moved(expressive_jaw(), "AU45 0.8 left; blink 0.5; hold 1");
+  const auto lids = [&](double time_s) { return moved.motion.expression(time_s).lids; };
+  for (const double time_s : {0.5, 0.55, 0.62, 0.7, 0.81, 1.5})
+    EXPECT_NEAR(lids(time_s).left, 0.8, 1e-9) << time_s;
+  EXPECT_NEAR(lids(0.62).right, 0.5, 1e-9);
+  EXPECT_NEAR(lids(0.82).right, 0, 1e-9);
+}
+
+TEST(Movements, LidsCloseByTheirActionUnitsAndBlinksAlone) {
+  for (const char* closing : {"open 10; blink left", "inverse:AU43 0.5 over 1", "smile and AU45"})
+    EXPECT_TRUE(motion_closes_lids(closing)) << closing;
+  for (const char* others : {"smile; rest", "AU43 0; hold 1", "opening", "nowhere.csv"})
+    EXPECT_FALSE(motion_closes_lids(others)) << others;
+}
+
 TEST(Movements, ALongerMotionHasASlowerExpression) {
   MotionSettings slow;
   slow.duration_s = 5;

@@ -63,7 +63,7 @@ TEST(Expression, ActionUnits43And45CloseTheLidsOfTheirSides) {
     EXPECT_EQ(wink.at(3).lids.right, 0);
     EXPECT_EQ(wink.at(3).muscles, (std::vector<double>{0, 0}));
     ASSERT_EQ(wink.notes.size(), 1u) << "no muscle is missing";
-    EXPECT_NE(wink.notes[0].find("look only"), std::string::npos);
+    EXPECT_EQ(wink.notes[0], "lid closure is drawn only; no measurement depends on it");
     EXPECT_FALSE(expression_moves_upper_face(unit));
   }
   const Expression both = make_expression("AU43:0.7+AU45:0.7:right+smile", pair_of_muscles());
@@ -71,6 +71,33 @@ TEST(Expression, ActionUnits43And45CloseTheLidsOfTheirSides) {
   EXPECT_EQ(both.at(1).muscles[0], 1);
   EXPECT_FALSE(make_expression("smile", pair_of_muscles()).at(1).lids.any());
   EXPECT_NE(refusal("AU45:1.2").find("0 to 1, not 1.2"), std::string::npos);
+}
+
+TEST(Expression, LeavesAMuscleOfTheLidsThatTheCaseBringsRelaxed) {
+  std::vector<FaceMuscle> muscles = pair_of_muscles();
+  const std::string kind(lid_closer);
+  for (const std::string side : {"left_", "right_"})
+    muscles.push_back({.name = side + kind, .kind = kind, .lines = {}});
+  const Expression blink = make_expression("AU45", muscles);
+  EXPECT_EQ(blink.at(1).muscles, (std::vector<double>{0, 0, 0, 0}));
+  EXPECT_EQ(blink.at(1).lids, (LidClosure{1, 1}));
+  const auto file = std::filesystem::temp_directory_path() / "condyle-test-lid-muscle.csv";
+  write_file(file, "time_s,left_" + kind + ",right_AU45\n0,0,0\n1,0.6,1\n");
+  const Expression lids = make_expression(file.string(), muscles);
+  EXPECT_EQ(lids.at(1).muscles, (std::vector<double>{0, 0, 0, 0}));
+  EXPECT_EQ(lids.at(1).lids, (LidClosure{0.6, 1}));
+}
+
+TEST(Expression, AFileNotesKindsThatThePatientLacks) {
+  const auto file = std::filesystem::temp_directory_path() / "condyle-test-lacking.csv";
+  write_file(file, "time_s,AU12,left_AU17,right_AU17,AU20\n0,0,0,0,0\n1,1,0.5,1,0\n");
+  const std::vector<std::string> notes = make_expression(file.string(), pair_of_muscles()).notes;
+  ASSERT_EQ(notes.size(), 1u);
+  EXPECT_TRUE(notes[0].starts_with("AU17: ")) << notes[0];
+  EXPECT_NE(notes[0].find("mentalis"), std::string::npos) << notes[0];
+  EXPECT_EQ(notes[0].find("risorius"), std::string::npos) << "AU20 is 0 throughout: " << notes[0];
+  write_file(file, "time_s,AU12,left_zygomaticus_major\n0,0,0\n1,1,0.5\n");
+  EXPECT_TRUE(make_expression(file.string(), pair_of_muscles()).notes.empty());
 }
 
 TEST(Expression, TellsWhetherItMovesTheUpperFace) {
@@ -156,6 +183,9 @@ TEST(Expression, AFileGivesMusclesOrBothSides) {
   EXPECT_NE(refusal(file.string()).find("0 to 1, not 1.2"), std::string::npos);
   write_file(file, "time_s,masseter\n0,0\n1,1\n");
   EXPECT_NE(refusal(file.string()).find("masseter"), std::string::npos);
+  EXPECT_NE(refusal(file.string()).find("expressions, also with left_ or right_: smile"),
+            std::string::npos)
+      << refusal(file.string());
 }
 
 }  // namespace
