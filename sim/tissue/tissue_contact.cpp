@@ -32,11 +32,11 @@ constexpr double corner_mm = 5;          // nearer to a corner both lips merge
 constexpr double deepest_lip_mm = 0.4;
 constexpr double apart_mm = 0.02;       // between the lips after their nodes have been moved apart
 constexpr double lips_stiffness = 0.5;  // N/mm; lips are compliant to each other
+constexpr double skin_stiffness = 1;    // N/mm; the value that needs the fewest iterations
 /// Contact is at most this many times as stiff as the tissue by itself. Frames of an opening with a
 /// smile, 2,140 nodes, take 45 iterations (95th percentile 140); 69 (342) without a limit, 48 (145)
 /// with 5, 52 (187) with 8.
 constexpr double over_own_stiffness = 6;
-constexpr double skin_stiffness = 1;  // N/mm; the value that needs the fewest iterations
 constexpr double swept_mm = 10;  // farthest that points move from their rest relative to a bone
 
 /// Columns along one lip's edge, from the right corner to the left, both included.

@@ -27,6 +27,7 @@ TissueMemory memory_of(const TissueModel& model) {
   TissueMemory memory;
   const TissueContact& contact = *model.contact;
   memory.tissue = bytes_named(*model.mesh) + bytes_held(*model.mesh->runs) +
+                  model.mesh->own_stiffness.capacity() * sizeof(double) +
                   bytes_named(model.support) + bytes_named(contact) +
                   bytes_named(*model.opening.path);
   for (const auto* surface : {&contact.upper.surface, &contact.lower.surface,
