@@ -3,9 +3,11 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "tests/support/picture.h"
 #include "tests/support/program.h"
+#include "tests/support/real_cases.h"
 
 namespace condyle::test {
 namespace {
@@ -39,6 +41,46 @@ TEST(Expression, ASmileIsRecordedAndMeasured) {
   done = condyle(other);
   EXPECT_EQ(done.code, 2);
   EXPECT_NE(done.err.find("motion"), std::string::npos) << done.err;
+}
+
+/// Of the built-in patient (an empty folder) or of a case.
+void expect_smile_within_published_ranges(const std::string& patient) {
+  const Folder folder;
+  const fs::path out = folder / "out";
+  std::vector<std::string> smile = {"run", "--expression", "smile", "--frames", "2", "--out", out};
+  if (!patient.empty()) smile.insert(smile.begin() + 1, patient);
+  const Outcome done = condyle(smile);
+  ASSERT_EQ(done.code, 0) << done.err;
+  const auto report = nlohmann::json::parse(read_text(out / "report.json"));
+  std::set<std::string> within;
+  for (const auto& finding : report["findings"]) {
+    if (!finding.contains("band")) continue;
+    EXPECT_EQ(finding["within"], true) << finding;
+    within.insert(finding["quantity"]);
+  }
+  for (const char* quantity :
+       {"left corner of the mouth: displacement", "right corner of the mouth: displacement",
+        "left corner of the mouth: direction above the horizontal, frontal",
+        "right corner of the mouth: direction above the horizontal, frontal",
+        "change of the mouth's width", "change of the upper lip's length",
+        "left_zygomaticus_major: length over that at rest",
+        "right_zygomaticus_major: length over that at rest"})
+    EXPECT_TRUE(within.contains(quantity)) << quantity;
+}
+
+TEST(Expression, ASmileIsWithinPublishedRanges) { expect_smile_within_published_ranges(""); }
+
+TEST(Expression, ASmileOfAMeasuredPatientIsWithinPublishedRanges) {
+  const fs::path files = real_data() / "case-badin";
+  if (!fs::exists(files)) GTEST_SKIP() << "real anatomy absent";
+  const Folder folder;
+  const std::string patient = folder / "case";
+  const Outcome done = condyle({"import", "meshes", "--maxilla", files / "maxilla_capped.ply",
+                                "--mandible", files / "mandible.ply", "--face",
+                                files / "face_skin.ply", "--landmarks", files / "markers.csv",
+                                "--face-muscles", files / "face_muscles.csv", "--out", patient});
+  ASSERT_EQ(done.code, 0) << done.err;
+  expect_smile_within_published_ranges(patient);
 }
 
 std::string notes_of(const fs::path& folder) {
