@@ -200,7 +200,9 @@ Motion muscles_that_follow(const Motion& reference, const Case& patient,
         return excitations;
       });
   motion.expression = reference.expression;
-  motion.notes = notes_of(patient, jaw, settings);
+  motion.notes = reference.notes;
+  for (std::string& note : notes_of(patient, jaw, settings))
+    motion.notes.push_back(std::move(note));
   motion.notes.push_back(fmt::format(
       "the incisal point tracks {} within {:.2f} mm (root mean square; maximum {:.2f} mm)",
       reference.name, count ? std::sqrt(squares / static_cast<double>(count)) : 0, most));

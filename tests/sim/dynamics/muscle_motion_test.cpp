@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <fstream>
 
 #include "engine/core/error.h"
@@ -83,6 +84,14 @@ TEST_F(MuscleMotion, MusclesFollowAGivenOpening) {
   EXPECT_NEAR(again.duration_s, found.duration_s, 1e-9);
   for (double t = 0; t <= again.duration_s; t += 0.01)
     ASSERT_LT((again.target(t) * incisor() - found.target(t) * incisor()).norm(), 1e-6) << t;
+}
+
+TEST_F(MuscleMotion, MusclesThatFollowKeepTheNotesOfTheMotion) {
+  const Motion prescribed = make("AU45 over 0.2"), found = make("inverse:AU45 over 0.2");
+  ASSERT_FALSE(prescribed.notes.empty());
+  for (const std::string& note : prescribed.notes)
+    EXPECT_EQ(std::count(found.notes.begin(), found.notes.end(), note), 1) << note;
+  EXPECT_GT(found.notes.size(), prescribed.notes.size());
 }
 
 TEST_F(MuscleMotion, FromAFileOfGroupsItOpensAndCloses) {
