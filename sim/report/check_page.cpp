@@ -83,11 +83,15 @@ class ClearancePage {
     const auto order = worst_first(check_);
     for (std::size_t k = 0; k < std::min(max_sentences, order.size()); ++k) {
       const auto& pair = check_.pairs[order[k]];
-      html_.add("<li>{} <strong>{} and {}</strong> ({}): {}. ",
-                pair.violated() ? "&#10007;" : "&#10003;", escaped(pair.a), escaped(pair.b),
-                escaped(rule_text(pair)), escaped(verdict_text(pair)));
-      html_.add("{}: {}.", pair.beyond_rest_mm > 0 ? "Deepest" : "Closest",
-                escaped(worst_caption(pair)));
+      html_.add(
+          "<li>{} <strong>{} and {}</strong> ({}): ", pair.violated() ? "&#10007;" : "&#10003;",
+          escaped(pair.a), escaped(pair.b), escaped(rule_text(pair)));
+      if (pair.stays_apart())
+        html_.add("stay at least {:.2f} mm apart, closest at {}: {}.", pair.min_distance_mm,
+                  escaped(worst_moment(pair)), escaped(worst_place(pair)));
+      else
+        html_.add("{}. {}: {}.", escaped(verdict_text(pair)),
+                  pair.beyond_rest_mm > 0 ? "Deepest" : "Closest", escaped(worst_caption(pair)));
       if (pair.push_out_mm) html_.add(" {}", escaped(push_out_text(pair)));
       html_ += "</li>\n";
     }

@@ -21,6 +21,9 @@ std::string summary_text(const ClearanceCheck& check);
 
 /// Describes a pair at its worst moment in one sentence.
 std::string worst_caption(const PairVerdict& pair);
+/// Its parts: opening, rotation and time; side and regions.
+std::string worst_moment(const PairVerdict& pair);
+std::string worst_place(const PairVerdict& pair);
 
 /// Says in one sentence where distance has no sign; empty when both surfaces are closed.
 std::string open_surface_text(const PairVerdict& pair);

@@ -86,6 +86,19 @@ std::string push_out_text(const PairVerdict& pair) {
                      along(out.z(), "up", "down"), out.norm());
 }
 
+std::string worst_moment(const PairVerdict& pair) {
+  const MotionTime& when = pair.worst.when;
+  return fmt::format("{} mm opening, {}° rotation ({:.2f} s{})", tenths(when.opening_mm),
+                     tenths(when.rotation_deg), when.time_s,
+                     when.between ? ", between two frames" : "");
+}
+
+std::string worst_place(const PairVerdict& pair) {
+  const auto& measure = pair.worst.measure;
+  const char* noun = measure.side == "both" ? " sides" : measure.side == "middle" ? "" : " side";
+  return measure.side + noun + ", " + measure.region();
+}
+
 std::string worst_caption(const PairVerdict& pair) {
   const auto& [when, sample, measure, poses] = pair.worst;
   std::string text;
@@ -102,20 +115,14 @@ std::string worst_caption(const PairVerdict& pair) {
     text = pair.rest_depth_mm > 0
                ? fmt::format("{:.2f} mm deep, no deeper than at rest", sample.depth_mm)
                : "touching";
-  text += fmt::format(" at {} mm opening, {}° rotation ({:.2f} s{})", tenths(when.opening_mm),
-                      tenths(when.rotation_deg), when.time_s,
-                      when.between ? ", between two frames" : "");
+  text += " at " + worst_moment(pair);
   if (sample.contact.touching) {
     text += fmt::format("; contact {:.1f} mm² (within 0.1 mm) in {} {}", measure.area_mm2,
                         measure.patches, measure.patches == 1 ? "patch" : "patches");
     text += measure.volume_known ? fmt::format(", overlap {:.1f} mm³", measure.volume_mm3)
                                  : ", overlap volume unknown: open surface";
   }
-  text += "; " + measure.side +
-          (measure.side == "both"     ? " sides"
-           : measure.side == "middle" ? ""
-                                      : " side");
-  return text + ", " + measure.region();
+  return text + "; " + worst_place(pair);
 }
 
 }  // namespace condyle

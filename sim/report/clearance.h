@@ -55,6 +55,11 @@ struct PairVerdict {
   std::vector<double> clearance_mm;  // one per frame; negative: depth of the overlap
 
   bool violated() const { return collides || too_close || at_rest || coincide; }
+  /// No contact, and no gap to keep between a least and a greatest value.
+  bool stays_apart() const {
+    return !violated() && rule.policy != PairPolicy::guided && rest_depth_mm <= 0 &&
+           beyond_rest_mm <= 0 && !first_touch;
+  }
 };
 
 struct ClearanceCheck {

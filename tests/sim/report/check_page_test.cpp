@@ -1,5 +1,6 @@
 #include "sim/report/check_page.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -150,7 +151,11 @@ TEST(CheckPage, SaysEachSentenceOnceAndNamesProgramDateAndSurfaces) {
     for (std::size_t at = 0; (at = page.find(words, at)) != std::string::npos; ++at) ++found;
     return found;
   };
-  EXPECT_EQ(count(worst_caption(check.pairs.at(0))), 1);
+  const PairVerdict& pair = check.pairs.at(0);
+  EXPECT_EQ(count(worst_moment(pair)), 1);
+  EXPECT_EQ(count(worst_place(pair)), 1);
+  EXPECT_EQ(count(fmt::format("{:.2f} mm apart", pair.min_distance_mm)),
+            1 + (pair.rest_distance_mm == pair.min_distance_mm));  // in the table, too
   EXPECT_EQ(count("Made by Condyle 1.2 on 2026-11-24 10:00 UTC."), 1);
   EXPECT_EQ(count("maxilla 0123, mandible 4567."), 1);
   EXPECT_EQ(count("closest first"), 1);
