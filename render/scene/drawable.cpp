@@ -157,9 +157,12 @@ std::vector<Drawable> make_drawables(std::span<const Part* const> parts, const M
     if (part.role == Role::eyes)
       drawables.back().behind_lashes =
           skin_about(part.mesh, lash_radius, face == parts.end() ? nullptr : &(*face)->mesh);
-    if (!mouth_rim.empty())
+    if (!mouth_rim.empty()) {
       drawables.back().folds = std::make_shared<const SkinFolds>(
           positions, normals, drawables.back().triangles(), mouth_rim);
+      drawables.back().hollows =
+          std::make_shared<const CheekHollows>(positions, normals, mouth_rim, parts);
+    }
   }
   return drawables;
 }
@@ -185,6 +188,7 @@ std::vector<Drawable> drawables_like(std::span<const Drawable> others) {
     drawables.back().uneven = other.uneven;
     drawables.back().behind_lashes = other.behind_lashes;
     drawables.back().folds = other.folds;
+    drawables.back().hollows = other.hollows;
   }
   return drawables;
 }
@@ -280,6 +284,8 @@ void Drawable::move_face(std::vector<Eigen::Vector3f> positions, const FaceLook&
                          std::vector<Eigen::Vector3f>& normals_scratch) {
   even_rim(positions, uneven);
   auto shades = folds && look.folded ? folds->apply(positions) : std::vector<SkinFolds::Shade>{};
+  if (hollows && look.folded)
+    for (const SkinFolds::Shade& shade : hollows->apply(positions)) shades.push_back(shade);
   if (look.alive)
     for (const SkinFolds::Shade& shade : look.alive(positions)) shades.push_back(shade);
   if (look.relief || relief_moved) {

@@ -1,0 +1,180 @@
+#include "render/face/cheek_hollows.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "engine/mesh/triangle_tree.h"
+
+namespace condyle {
+namespace {
+
+using Eigen::Vector3f;
+
+constexpr float adult_width_mm = 50;  // of the mouth for which lengths are given
+constexpr float slack_stretch = 0.05f;
+constexpr float thickest_mm = 15;
+constexpr float share_of_clearance = 0.4f;
+constexpr float shade_per_mm = 0.04f, darkest_shade = 0.25f;
+// Of the hollow, from the corner of the mouth: backward along the skin, and upward.
+constexpr float hollow_front_mm = 6, deep_from_mm = 22, deep_to_mm = 28, masseter_mm = 46;
+constexpr float hollow_height_mm = 4, hollow_half_height_mm = 17;
+
+float eased_in(float t) {
+  t = std::clamp(t, 0.f, 1.f);
+  return t * t * (3 - 2 * t);
+}
+
+/// A vertex of a cheek in the directions of its hollow.
+struct CheekPoint {
+  int vertex;
+  float back, up;  // from the corner of the mouth, over the unit of length
+};
+
+float hollow_weight(const CheekPoint& p) {
+  const float along = eased_in((p.back - hollow_front_mm) / (deep_from_mm - hollow_front_mm)) *
+                      eased_in((masseter_mm - p.back) / (masseter_mm - deep_to_mm));
+  const float up = (p.up - hollow_height_mm) / hollow_half_height_mm;
+  return along * std::exp(-up * up);
+}
+
+/// Jaws and teeth within a box.
+TriMesh jaws_within(std::span<const Part* const> parts, const Eigen::AlignedBox3d& box) {
+  TriMesh jaws;
+  for (const Part* part : parts) {
+    if (!collides(part->role)) continue;
+    for (const Eigen::Vector3i& t : part->mesh.triangles) {
+      std::array<Eigen::Vector3d, 3> corners;
+      Eigen::AlignedBox3d own;
+      for (int k = 0; k < 3; ++k) {
+        corners[static_cast<std::size_t>(k)] = part->mesh.vertices[static_cast<std::size_t>(t[k])];
+        own.extend(corners[static_cast<std::size_t>(k)]);
+      }
+      if (!box.intersects(own)) continue;
+      const auto first = static_cast<int>(jaws.vertices.size());
+      jaws.vertices.insert(jaws.vertices.end(), corners.begin(), corners.end());
+      jaws.triangles.emplace_back(first, first + 1, first + 2);
+    }
+  }
+  return jaws;
+}
+
+/// The skin beside a corner of the mouth. side: 1 left, -1 right.
+std::vector<CheekPoint> cheek_points(std::span<const Vector3f> rest,
+                                     std::span<const Vector3f> normals, const Vector3f& corner,
+                                     float side, float unit) {
+  std::vector<CheekPoint> points;
+  for (std::size_t v = 0; v < rest.size(); ++v) {
+    const Vector3f off = (rest[v] - corner) / unit;
+    const float out = side * off.x();
+    if (out < 0 || off.y() < -10 || std::abs(off.z() - hollow_height_mm) > 45 ||
+        normals[v].dot(Vector3f(0.7f * side, -0.7f, 0)) < 0.3f)
+      continue;
+    if (const float back = std::hypot(out, off.y()); back < masseter_mm)
+      points.push_back({static_cast<int>(v), back, off.z()});
+  }
+  return points;
+}
+
+}  // namespace
+
+CheekHollows::CheekHollows(std::span<const Vector3f> rest, std::span<const Vector3f> normals,
+                           std::span<const int> rim, std::span<const Part* const> parts) {
+  if (rim.empty()) return;
+  const auto by_x = [&](int a, int b) {
+    return rest[static_cast<std::size_t>(a)].x() < rest[static_cast<std::size_t>(b)].x();
+  };
+  const auto [right, left] = std::minmax_element(rim.begin(), rim.end(), by_x);
+  const std::array corners{rest[static_cast<std::size_t>(*left)],
+                           rest[static_cast<std::size_t>(*right)]};
+  const float unit = (corners[0].x() - corners[1].x()) / adult_width_mm;
+  if (unit <= 0) return;
+  for (std::size_t k = 0; k < 2; ++k) {
+    const auto points = cheek_points(rest, normals, corners[k], k == 0 ? 1.f : -1.f, unit);
+    if (points.empty()) continue;
+    Eigen::AlignedBox3d box;
+    for (const auto& p : points)
+      box.extend(rest[static_cast<std::size_t>(p.vertex)].cast<double>());
+    const Eigen::Vector3d margin = Eigen::Vector3d::Constant(thickest_mm * unit);
+    const TriMesh jaws =
+        jaws_within(parts, Eigen::AlignedBox3d(box.min() - margin, box.max() + margin));
+    if (jaws.triangles.empty()) continue;
+    const TriangleTree tree(jaws);
+    Cheek cheek;
+    float weights = 0, thickness = 0;
+    Vector3f normal = Vector3f::Zero();
+    for (const auto& p : points) {
+      const float weight = hollow_weight(p);
+      if (weight < 2e-3f) continue;
+      const auto v = static_cast<std::size_t>(p.vertex);
+      const float clear = std::min(
+          static_cast<float>(tree.nearest(rest[v].cast<double>()).distance), thickest_mm * unit);
+      cheek.members.push_back({p.vertex, weight, share_of_clearance * clear});
+      weights += weight;
+      thickness += weight * clear;
+      normal += weight * normals[v];
+    }
+    if (weights <= 0) continue;
+    cheek.thickness_mm = thickness / weights;
+    for (std::size_t c = 0; c < columns; ++c)
+      for (std::size_t r = 0; r < rows; ++r) {
+        const float back = 16 + 8 * static_cast<float>(c), up = -23 + 8 * static_cast<float>(r);
+        const auto off = [&](const CheekPoint& p) { return std::hypot(p.back - back, p.up - up); };
+        cheek.gauge[c][r] = std::min_element(points.begin(), points.end(),
+                                             [&](const CheekPoint& a, const CheekPoint& b) {
+                                               return off(a) < off(b);
+                                             })
+                                ->vertex;
+      }
+    cheek.rest_mm = lengths(cheek, rest);
+    if (*std::min_element(cheek.rest_mm.begin(), cheek.rest_mm.end()) <= 0) continue;
+    cheek.outward = gauge_normal(cheek, rest).dot(normal) < 0 ? -1.f : 1.f;
+    cheeks_.push_back(std::move(cheek));
+  }
+}
+
+Vector3f CheekHollows::gauge_normal(const Cheek& cheek, std::span<const Vector3f> places) {
+  const auto at = [&](std::size_t column, std::size_t row) -> const Vector3f& {
+    return places[static_cast<std::size_t>(cheek.gauge[column][row])];
+  };
+  Vector3f up = Vector3f::Zero(), back = Vector3f::Zero();
+  for (std::size_t c = 0; c < columns; ++c) up += at(c, rows - 1) - at(c, 0);
+  for (std::size_t r = 0; r < rows; ++r) back += at(columns - 1, r) - at(0, r);
+  return up.cross(back).normalized();
+}
+
+std::array<float, CheekHollows::columns> CheekHollows::lengths(const Cheek& cheek,
+                                                               std::span<const Vector3f> places) {
+  std::array<float, columns> sums = {};
+  for (std::size_t c = 0; c < columns; ++c)
+    for (std::size_t r = 0; r + 1 < rows; ++r)
+      sums[c] += (places[static_cast<std::size_t>(cheek.gauge[c][r + 1])] -
+                  places[static_cast<std::size_t>(cheek.gauge[c][r])])
+                     .norm();
+  return sums;
+}
+
+std::vector<SkinFolds::Shade> CheekHollows::apply(std::vector<Vector3f>& places) const {
+  std::vector<SkinFolds::Shade> shades;
+  for (const Cheek& cheek : cheeks_) {
+    const auto now = lengths(cheek, places);
+    float stretch = 0;
+    for (std::size_t c = 0; c < columns; ++c)
+      stretch += now[c] / cheek.rest_mm[c] / static_cast<float>(columns);
+    const float excess = stretch - 1 - slack_stretch;
+    if (excess <= 0) continue;
+    const float deep = cheek.thickness_mm * excess / (1 + excess);
+    const Vector3f inward = -cheek.outward * gauge_normal(cheek, places);
+    for (const Member& member : cheek.members) {
+      const float asked = deep * member.weight;
+      if (asked <= 0 || member.limit_mm <= 0) continue;
+      const float depth = asked * member.limit_mm / std::hypot(asked, member.limit_mm);
+      places[static_cast<std::size_t>(member.vertex)] += depth * inward;
+      shades.push_back({member.vertex, 1 - std::min(shade_per_mm * depth, darkest_shade)});
+    }
+  }
+  return shades;
+}
+
+}  // namespace condyle
