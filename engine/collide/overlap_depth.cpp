@@ -32,8 +32,8 @@ class DepthSearch {
   DepthSearch(const Solid& a, const Solid& b, const SurfacePart* part, const Pose& X_AB,
               const DepthSettings& settings, const CrossingFaces* crossing)
       : settings_(settings),
-        sides_{{{part ? part->faces : b, a, X_AB, nullptr, {}},
-                {a, b, X_AB.inverse(), part ? &part->tree : nullptr, {}}}},
+        sides_{{{(part ? part->faces : b).faces(), a, X_AB, nullptr, {}},
+                {a.faces(), b, X_AB.inverse(), part ? &part->tree : nullptr, {}}}},
         crossing_known_(crossing != nullptr) {
     if (crossing_known_) {
       sides_[0].put_crossing(crossing->b);
@@ -67,14 +67,15 @@ class DepthSearch {
 
  private:
   struct Side {
-    const Solid &surface, &solid;
+    const Solid::Faces& surface;
+    const Solid& solid;
     Pose X;                              // of the surface in the solid's coordinates
     const TriangleTree* part = nullptr;  // of the solid; only points nearest to it count
     std::vector<int> crossing;           // faces that cross the solid, or its part, ascending
     std::vector<int> corner_place = {};  // per corner: its last place in corner_places_, or -1
 
     void put_crossing(const std::vector<int>& triangles) {
-      for (const int t : triangles) crossing.push_back(surface.slot_[t]);
+      for (const int t : triangles) crossing.push_back(surface.slot[t]);
       std::sort(crossing.begin(), crossing.end());
       crossing.erase(std::unique(crossing.begin(), crossing.end()), crossing.end());
     }
@@ -137,7 +138,7 @@ class DepthSearch {
   }
 
   Place look_at(Into into, const Eigen::Vector3d& p, const Place& near) {
-    const TriangleTree& tree = shell(into).tree;
+    const TriangleTree& tree = shell(into).tree();
     double reach = infinity;  // a known upper bound accelerates the query
     if (near.triangle >= 0)
       reach = (nearest_point(p, tree.corners(near.triangle)) - p).norm() + reach_rounding_mm;
@@ -153,7 +154,7 @@ class DepthSearch {
       depth_mm = place.depth;
       side = into.side;
       point = p;
-      const TriangleTree& tree = shell(into).tree;
+      const TriangleTree& tree = shell(into).tree();
       outward = tree.pseudonormal(tree.nearest(p, place.depth + reach_rounding_mm));
     }
     return place;
@@ -162,8 +163,8 @@ class DepthSearch {
   /// The same for a corner of a face, which its neighbours share: evaluated once for each shell.
   Place look_at_corner(Into into, int face, int k, const Eigen::Vector3d& p, const Place& near) {
     Side& from = sides_[into.side];
-    if (from.corner_place.empty()) from.corner_place.assign(from.surface.first_at_.size() - 1, -1);
-    int& last = from.corner_place[from.surface.face_corners_[face][k]];
+    if (from.corner_place.empty()) from.corner_place.assign(from.surface.first_at.size() - 1, -1);
+    int& last = from.corner_place[from.surface.corners[face][k]];
     for (int i = last; i >= 0; i = corner_places_[i].earlier)
       if (corner_places_[i].shell == into.shell) {
         ++evaluations_;  // the limit counts them too
@@ -182,7 +183,7 @@ class DepthSearch {
     for (const auto& corner : t) distance2 = std::max(distance2, (corner - near.at).squaredNorm());
     const double by_distance = near.depth + std::sqrt(distance2);
     if (by_distance <= enough() || near.triangle < 0) return by_distance;
-    const Triangle& opposite = shell(into).tree.corners(near.triangle);
+    const Triangle& opposite = shell(into).tree().corners(near.triangle);
     double farthest2 = 0;
     for (const auto& corner : t) {
       farthest2 = std::max(farthest2, (nearest_point(corner, opposite) - corner).squaredNorm());
@@ -197,7 +198,7 @@ class DepthSearch {
     const Eigen::Vector3d low = t[0].cwiseMin(t[1]).cwiseMin(t[2]).array() - reach_rounding_mm,
                           high = t[0].cwiseMax(t[1]).cwiseMax(t[2]).array() + reach_rounding_mm;
     int found = -1;
-    shell(into).tree.any_near(low, high, [&](const Triangle& other, int triangle) {
+    shell(into).tree().any_near(low, high, [&](const Triangle& other, int triangle) {
       const Eigen::Vector3d low_other = other[0].cwiseMin(other[1]).cwiseMin(other[2]),
                             high_other = other[0].cwiseMax(other[1]).cwiseMax(other[2]);
       const bool touches = (low_other.array() <= high.array()).all() &&
@@ -229,7 +230,7 @@ class DepthSearch {
   /// Queues a ball; a bound from the place nearby suffices until it is the largest.
   void offer_ball(Into into, int index, const Place& near) {
     const Side& from = sides_[into.side];
-    const Solid::Ball& ball = from.surface.balls_[index];
+    const Solid::Ball& ball = from.surface.balls[index];
     const Eigen::Vector3d middle = from.X * ball.center;
     // A point inside is no deeper than it is in the box.
     double bound = shell(into).box.size().maxCoeff();
@@ -237,13 +238,13 @@ class DepthSearch {
       bound = std::min({bound, middle[k] - shell(into).box.low[k] + ball.radius,
                         shell(into).box.high[k] - middle[k] + ball.radius});
     if (near.triangle >= 0) {
-      const Triangle& opposite = shell(into).tree.corners(near.triangle);
+      const Triangle& opposite = shell(into).tree().corners(near.triangle);
       bound = std::min({bound, near.depth + (middle - near.at).norm() + ball.radius,
                         (nearest_point(middle, opposite) - middle).norm() + ball.radius});
     }
     if (bound <= enough()) return;
     if (knows_all_crossings(into) && ball.connected && !from.crosses(ball.first, ball.count) &&
-        look_at_point(into, from.X * from.surface.faces_[ball.first][0], near).depth <
+        look_at_point(into, from.X * from.surface.faces[ball.first][0], near).depth <
             -reach_rounding_mm)
       return;
     push(bound, {.into = into, .ball = index, .middle = near});
@@ -251,7 +252,7 @@ class DepthSearch {
 
   void divide_ball(Item item) {
     const Side& from = sides_[item.into.side];
-    const Solid::Ball& ball = from.surface.balls_[item.ball];
+    const Solid::Ball& ball = from.surface.balls[item.ball];
     if (!item.looked && ball.count <= many_faces) {
       item.middle = look_at(item.into, from.X * ball.center, item.middle);
       item.looked = true;
@@ -267,7 +268,7 @@ class DepthSearch {
   }
 
   Triangle face_of(const Side& from, int face) const {
-    Triangle t = from.surface.faces_[face];
+    Triangle t = from.surface.faces[face];
     for (auto& corner : t) corner = from.X * corner;
     return t;
   }
@@ -295,11 +296,11 @@ class DepthSearch {
   bool has_hidden_piece() const {
     for (int i = 0; i < 2; ++i) {
       const Side& from = sides_[i];
-      std::vector<bool> crosses(from.surface.piece_face_.size(), false);
-      for (const int face : from.crossing) crosses[from.surface.piece_[face]] = true;
+      std::vector<bool> crosses(from.surface.piece_face.size(), false);
+      for (const int face : from.crossing) crosses[from.surface.piece[face]] = true;
       for (std::size_t piece = 0; piece < crosses.size(); ++piece) {
         if (crosses[piece]) continue;
-        const Eigen::Vector3d p = from.X * from.surface.faces_[from.surface.piece_face_[piece]][0];
+        const Eigen::Vector3d p = from.X * from.surface.faces[from.surface.piece_face[piece]][0];
         for (const auto& shell : from.solid.shells_)
           if (const double depth = shell.depth(p, 0, infinity);
               depth > -reach_rounding_mm && may_count({i, 0}, {p, depth, -1}, 0))
@@ -315,7 +316,7 @@ class DepthSearch {
   bool offer_inside(Into into) {
     const Side& from = sides_[into.side];
     std::vector<int> inside;
-    std::vector<bool> seen(from.surface.faces_.size(), false);
+    std::vector<bool> seen(from.surface.faces.size(), false);
     const auto spread = [&](int face, const Place& near) {
       from.surface.each_neighbour(face, [&](int other) {
         if (seen[other] || from.crosses(other, 1)) return;
@@ -404,7 +405,7 @@ class DepthSearch {
     if (item.cuts == max_cuts || along < 0) return best;
     // Far below its nearest triangle a small face is in reach of many.
     if (item.middle.depth > near_sizes * radius_about(item.face, item.middle.at)) return best;
-    const Triangle& opposite = shell(item.into).tree.corners(along);
+    const Triangle& opposite = shell(item.into).tree().corners(along);
     const Eigen::Vector3d normal =
         (opposite[1] - opposite[0]).cross(opposite[2] - opposite[0]).normalized();
     double most = tolerance();

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "engine/collide/shells.h"
 #include "engine/core/infinity.h"
@@ -17,75 +18,89 @@ double distance_to(const Box& box, const Eigen::Vector3d& p) {
   return (p - p.cwiseMax(box.low).cwiseMin(box.high)).norm();
 }
 
-}  // namespace
-
-Solid::Solid(const TriMesh& mesh) {
-  require_sound(mesh);
-  const std::vector<Shell> shells = solid_shells(mesh);
-  shell_count_ = static_cast<int>(shells.size());
-  for (const Shell& shell : shells) {
-    samples_.push_back(shell.mesh.vertices.front());
-    if (shell.closed)
-      shells_.push_back({TriangleTree(shell.mesh), bounding_box(shell.mesh)});
-    else
-      ++open_shell_count_;
-  }
-  order_faces(mesh);
-}
-
-void Solid::order_faces(const TriMesh& mesh) {
+std::vector<int> in_order(const TriMesh& mesh) {
   std::vector<int> order(mesh.triangles.size());
   std::iota(order.begin(), order.end(), 0);
-  balls_.reserve(order.size());
+  return order;
+}
+
+}  // namespace
+
+Solid::Solid(const TriMesh& mesh) : faces_({mesh.vertices, mesh.triangles, {}}) {
+  require_sound(mesh);
+  std::vector<Shell> shells = solid_shells(mesh);
+  shell_count_ = static_cast<int>(shells.size());
+  for (Shell& shell : shells) {
+    samples_.push_back(shell.mesh.vertices.front());
+    if (shell.closed) {
+      const Box box = bounding_box(shell.mesh);
+      shells_.push_back({MadeOnce<TriangleTree, TriMesh>(std::move(shell.mesh)), box});
+    } else {
+      ++open_shell_count_;
+    }
+  }
+  face_count_ = mesh.triangles.size();
+  ball_ = ball_around(mesh, in_order(mesh), 0, static_cast<int>(face_count_)).first;
+}
+
+Solid::Faces::Faces(const TriMesh& mesh) {
+  std::vector<int> order = in_order(mesh);
+  balls.reserve(order.size());
   build_balls(mesh, order, 0, static_cast<int>(order.size()));
   find_connected(mesh, order);
-  faces_.reserve(order.size());
-  slot_.resize(order.size());
+  faces.reserve(order.size());
+  slot.resize(order.size());
   for (const int i : order) {
     const auto& t = mesh.triangles[i];
-    slot_[i] = static_cast<int>(faces_.size());
-    faces_.push_back({mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]});
+    slot[i] = static_cast<int>(faces.size());
+    faces.push_back({mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]});
   }
   find_neighbours(mesh);
 }
 
-void Solid::find_neighbours(const TriMesh& mesh) {
-  face_corners_.resize(faces_.size());
-  first_at_.assign(mesh.vertices.size() + 1, 0);
-  for (std::size_t i = 0; i < slot_.size(); ++i) {
-    face_corners_[slot_[i]] = mesh.triangles[i];
-    for (const int v : mesh.triangles[i]) ++first_at_[v + 1];
+void Solid::Faces::find_neighbours(const TriMesh& mesh) {
+  corners.resize(faces.size());
+  first_at.assign(mesh.vertices.size() + 1, 0);
+  for (std::size_t i = 0; i < slot.size(); ++i) {
+    corners[slot[i]] = mesh.triangles[i];
+    for (const int v : mesh.triangles[i]) ++first_at[v + 1];
   }
-  std::partial_sum(first_at_.begin(), first_at_.end(), first_at_.begin());
-  at_corner_.resize(3 * faces_.size());
-  std::vector<int> next = first_at_;
-  for (std::size_t face = 0; face < face_corners_.size(); ++face)
-    for (const int v : face_corners_[face]) at_corner_[next[v]++] = static_cast<int>(face);
+  std::partial_sum(first_at.begin(), first_at.end(), first_at.begin());
+  at_corner.resize(3 * faces.size());
+  std::vector<int> next = first_at;
+  for (std::size_t face = 0; face < corners.size(); ++face)
+    for (const int v : corners[face]) at_corner[next[v]++] = static_cast<int>(face);
 
   const Components components = find_components(mesh);
-  piece_.resize(faces_.size());
-  piece_face_.assign(static_cast<std::size_t>(components.count), -1);
-  for (std::size_t i = 0; i < slot_.size(); ++i) {
-    piece_[slot_[i]] = components.of_triangle[i];
-    piece_face_[components.of_triangle[i]] = slot_[i];
+  piece.resize(faces.size());
+  piece_face.assign(static_cast<std::size_t>(components.count), -1);
+  for (std::size_t i = 0; i < slot.size(); ++i) {
+    piece[slot[i]] = components.of_triangle[i];
+    piece_face[components.of_triangle[i]] = slot[i];
   }
 }
 
-int Solid::build_balls(const TriMesh& mesh, std::vector<int>& order, int first, int last) {
+std::pair<Solid::Ball, Box> Solid::ball_around(const TriMesh& mesh, const std::vector<int>& order,
+                                               int first, int last) {
+  Box box;
+  for (int i = first; i < last; ++i)
+    for (const int v : mesh.triangles[order[i]]) box.add(mesh.vertices[v]);
+  const Eigen::Vector3d center = box.center();
+  double radius2 = 0;
+  for (int i = first; i < last; ++i)
+    for (const int v : mesh.triangles[order[i]])
+      radius2 = std::max(radius2, (mesh.vertices[v] - center).squaredNorm());
+  return {{center, std::sqrt(radius2), first, last - first, 0, false}, box};
+}
+
+int Solid::Faces::build_balls(const TriMesh& mesh, std::vector<int>& order, int first, int last) {
   const auto middle_of = [&](int i) -> Eigen::Vector3d {
     const auto& t = mesh.triangles[i];
     return mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]];
   };
-  Box box;
-  for (int i = first; i < last; ++i)
-    for (const int v : mesh.triangles[order[i]]) box.add(mesh.vertices[v]);
-  const int index = static_cast<int>(balls_.size());
-  balls_.push_back({box.center(), 0, first, last - first, 0, false});
-  double radius2 = 0;
-  for (int i = first; i < last; ++i)
-    for (const int v : mesh.triangles[order[i]])
-      radius2 = std::max(radius2, (mesh.vertices[v] - balls_[index].center).squaredNorm());
-  balls_[index].radius = std::sqrt(radius2);
+  const auto [ball, box] = ball_around(mesh, order, first, last);
+  const int index = static_cast<int>(balls.size());
+  balls.push_back(ball);
   if (last - first <= faces_a_leaf) return index;
   Eigen::Index axis = 0;
   box.size().maxCoeff(&axis);
@@ -97,15 +112,15 @@ int Solid::build_balls(const TriMesh& mesh, std::vector<int>& order, int first, 
   std::nth_element(order.begin() + first, order.begin() + middle, order.begin() + last, before);
   build_balls(mesh, order, first, middle);
   const int right = build_balls(mesh, order, middle, last);
-  balls_[index].right = right;
+  balls[index].right = right;
   return index;
 }
 
-void Solid::find_connected(const TriMesh& mesh, const std::vector<int>& order) {
+void Solid::Faces::find_connected(const TriMesh& mesh, const std::vector<int>& order) {
   std::vector<int> last_run(mesh.vertices.size(), -1);
   // Children come after their parents.
-  for (int index = static_cast<int>(balls_.size()) - 1; index >= 0; --index) {
-    Ball& ball = balls_[index];
+  for (int index = static_cast<int>(balls.size()) - 1; index >= 0; --index) {
+    Ball& ball = balls[index];
     const auto mark = [&](int i) {
       for (const int v : mesh.triangles[order[i]]) last_run[v] = index;
     };
@@ -130,7 +145,7 @@ void Solid::find_connected(const TriMesh& mesh, const std::vector<int>& order) {
       ball.connected = joined == ball.count;
       continue;
     }
-    const Ball &left = balls_[index + 1], &right = balls_[ball.right];
+    const Ball &left = balls[index + 1], &right = balls[ball.right];
     if (!left.connected || !right.connected) continue;
     for (int i = left.first; i < left.first + left.count; ++i) mark(i);
     for (int i = right.first; i < end && !ball.connected; ++i) ball.connected = meets(i);
@@ -139,12 +154,12 @@ void Solid::find_connected(const TriMesh& mesh, const std::vector<int>& order) {
 
 double Solid::ClosedShell::depth(const Eigen::Vector3d& p, double ball_radius, double reach) const {
   if (distance_to(box, p) > ball_radius) return -infinity;
-  return -tree.signed_nearest(p, reach).distance;
+  return -tree().signed_nearest(p, reach).distance;
 }
 
 double Solid::extent(const Eigen::Vector3d& direction) const {
   double most = -infinity;
-  for (const Triangle& face : faces_)
+  for (const Triangle& face : faces().faces)
     for (const auto& corner : face) most = std::max(most, direction.dot(corner));
   return most;
 }
@@ -165,7 +180,7 @@ double Solid::signed_distance(const Eigen::Vector3d& p) const {
     const double to_box = distance_to(shell.box, p);
     if (to_box > 0 && to_box >= least) continue;
     // Within its box the point may be deep inside, regardless of the distance to the others.
-    least = std::min(least, shell.tree.signed_nearest(p, to_box > 0 ? least : infinity).distance);
+    least = std::min(least, shell.tree().signed_nearest(p, to_box > 0 ? least : infinity).distance);
   }
   return least;
 }

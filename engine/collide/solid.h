@@ -1,9 +1,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <utility>
 #include <vector>
 
 #include "engine/collide/triangle_distance.h"
+#include "engine/core/made_once.h"
 #include "engine/math/pose.h"
 #include "engine/mesh/measure.h"
 #include "engine/mesh/tri_mesh.h"
@@ -13,7 +15,8 @@ namespace condyle {
 
 /// The inside of a surface: the union of its closed shells (connected pieces). Open shells have no
 /// inside; closed shells that face inward within another one are cavities and are ignored; other
-/// closed shells that face inward are flipped. Body coordinates, moved by the pose alone.
+/// closed shells that face inward are flipped. Body coordinates, moved by the pose alone. Queries
+/// are thread-safe; what only depths need is made for the first of them.
 class Solid {
  public:
   /// Welded mesh. throws: InputError, see require_sound.
@@ -23,11 +26,11 @@ class Solid {
   int shell_count() const { return shell_count_; }
   int open_shell_count() const { return open_shell_count_; }
 
-  std::size_t face_count() const { return faces_.size(); }
+  std::size_t face_count() const { return face_count_; }
 
   /// Ball around all vertices.
-  const Eigen::Vector3d& center() const { return balls_.front().center; }
-  double radius() const { return balls_.front().radius; }
+  const Eigen::Vector3d& center() const { return ball_.center; }
+  double radius() const { return ball_.radius; }
 
   /// Largest p . direction over all vertices.
   double extent(const Eigen::Vector3d& direction) const;
@@ -42,9 +45,10 @@ class Solid {
                                  const Pose& X_WB);
 
   struct ClosedShell {
-    TriangleTree tree;
+    MadeOnce<TriangleTree, TriMesh> made_tree;
     Box box;
 
+    const TriangleTree& tree() const { return made_tree.get(); }
     /// Depth of p inside, negative outside; -infinity when a ball of `radius` about p cannot reach
     /// it. `reach`: an upper bound of the distance of p from the surface, where known.
     double depth(const Eigen::Vector3d& p, double radius, double reach) const;
@@ -56,28 +60,42 @@ class Solid {
     int right = 0;           // second child (the first is next); 0 for a leaf
     bool connected = false;  // its faces are connected at their corners
   };
+  /// The triangles of the mesh with a tree of balls.
+  struct Faces {
+    explicit Faces(const TriMesh& mesh);
 
-  void order_faces(const TriMesh& mesh);
-  int build_balls(const TriMesh& mesh, std::vector<int>& order, int first, int last);
-  void find_connected(const TriMesh& mesh, const std::vector<int>& order);
-  void find_neighbours(const TriMesh& mesh);
-  /// Calls at(face) for each face at a corner of this one, including itself.
-  template <class At>
-  void each_neighbour(int face, const At& at) const {
-    for (const int v : face_corners_[face])
-      for (int i = first_at_[v]; i < first_at_[v + 1]; ++i) at(at_corner_[i]);
-  }
+    std::vector<Triangle> faces;           // in the order of the balls
+    std::vector<int> slot;                 // per triangle of the mesh: its index among the faces
+    std::vector<Ball> balls;               // depth first
+    std::vector<Eigen::Vector3i> corners;  // of each face
+    std::vector<int> first_at, at_corner;  // faces at each corner
+    std::vector<int> piece;                // per face; pieces share no corner
+    std::vector<int> piece_face;           // one face of each piece
+
+    /// Calls at(face) for each face at a corner of this one, including itself.
+    template <class At>
+    void each_neighbour(int face, const At& at) const {
+      for (const int v : corners[face])
+        for (int i = first_at[v]; i < first_at[v + 1]; ++i) at(at_corner[i]);
+    }
+
+   private:
+    int build_balls(const TriMesh& mesh, std::vector<int>& order, int first, int last);
+    void find_connected(const TriMesh& mesh, const std::vector<int>& order);
+    void find_neighbours(const TriMesh& mesh);
+  };
+
+  /// The ball around a range of faces, and the box of their corners.
+  static std::pair<Ball, Box> ball_around(const TriMesh& mesh, const std::vector<int>& order,
+                                          int first, int last);
+  const Faces& faces() const { return faces_.get(); }
   bool has_shell_inside(const Solid& other, const Pose& X_OS) const;
 
   std::vector<ClosedShell> shells_;       // facing outward
   std::vector<Eigen::Vector3d> samples_;  // one vertex of each shell, open ones included
-  std::vector<Triangle> faces_;           // in the order of the balls
-  std::vector<int> slot_;                 // per triangle of the mesh: its index among the faces
-  std::vector<Ball> balls_;               // depth first
-  std::vector<Eigen::Vector3i> face_corners_;  // of each face
-  std::vector<int> first_at_, at_corner_;      // faces at each corner
-  std::vector<int> piece_;                     // per face; pieces share no corner
-  std::vector<int> piece_face_;                // one face of each piece
+  MadeOnce<Faces, TriMesh> faces_;
+  Ball ball_ = {};  // around all
+  std::size_t face_count_ = 0;
   int shell_count_ = 0, open_shell_count_ = 0;
 };
 

@@ -63,12 +63,13 @@ ContactObstacle::ContactObstacle(const TriMesh& mesh, const Box& region,
                                  const std::filesystem::path& cache, int threads)
     : field_(cache.empty() ? DistanceField(mesh, field_settings(region), threads)
                            : cached_field(cache, mesh, field_settings(region), threads)),
-      surface_(mesh) {}
+      surface_({mesh.vertices, mesh.triangles, {}}) {}
 
 ContactObstacle::ContactObstacle(const TriMesh& piece, const TriMesh& uncut,
                                  const ContactObstacle& of_uncut,
                                  const std::filesystem::path& cache, int threads)
-    : field_(cached_piece_field(cache, piece, uncut, of_uncut.field_, threads)), surface_(piece) {}
+    : field_(cached_piece_field(cache, piece, uncut, of_uncut.field_, threads)),
+      surface_({piece.vertices, piece.triangles, {}}) {}
 
 double ContactObstacle::gradient_length(const Vector3d& p) const {
   constexpr double step_mm = 0.5 * spacing_mm;
@@ -106,14 +107,15 @@ bool ContactObstacle::near(const Vector3d& p, double reach, Near& near) const {
     }
   } else {
     const bool beyond = !spot.corner && spot.distance_mm > 0;  // the band, or the region
-    if (beyond || near.distance > reach || surface_.empty()) return false;
+    if (beyond || near.distance > reach || surface_.get().empty()) return false;
   }
-  const SurfacePoint found = surface_.signed_nearest(p, deepest_mm);
+  const SurfacePoint found = surface_.get().signed_nearest(p, deepest_mm);
   if (found.triangle < 0) return false;
   near.distance = (1 - of_field) * found.distance + of_field * field.distance;
   if (near.distance > reach) return false;
-  near.normal = std::abs(found.distance) > close_mm ? Vector3d((p - found.point) / found.distance)
-                                                    : surface_.pseudonormal(found).normalized();
+  near.normal = std::abs(found.distance) > close_mm
+                    ? Vector3d((p - found.point) / found.distance)
+                    : surface_.get().pseudonormal(found).normalized();
   if (of_field > 0)
     near.normal = ((1 - of_field) * near.normal + of_field * field.normal).normalized();
   apply_patch_normal(p, near);
@@ -141,7 +143,7 @@ Vector3d ContactObstacle::patch_normal(const Vector3d& p, const Vector3d& own) c
 }
 
 Vector3d ContactObstacle::exit_displacement(const Vector3d& p) const {
-  const SurfacePoint found = surface_.signed_nearest(p, deepest_mm);
+  const SurfacePoint found = surface_.get().signed_nearest(p, deepest_mm);
   return found.triangle < 0 || found.distance >= 0 ? Vector3d(Vector3d::Zero())
                                                    : Vector3d(found.point - p);
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/collide/distance_field.h"
+#include "engine/core/made_once.h"
 #include "engine/math/pose.h"
 #include "engine/mesh/triangle_tree.h"
 #include "engine/tissue/mesh_point.h"
@@ -18,7 +19,8 @@
 namespace condyle {
 
 /// A body that the mesh slides on and must not penetrate, in its own coordinates: a distance field
-/// near its surface within a region, exact triangle queries where the field is unknown.
+/// near its surface within a region, exact triangle queries where the field is unknown. Queries are
+/// thread-safe; the tree for the exact ones is made for the first of them.
 class ContactObstacle {
  public:
   /// The mesh must be welded, with valid indices. The field is cached in the folder `cache`, where
@@ -40,7 +42,7 @@ class ContactObstacle {
   /// The shortest displacement out of the body for a point inside, mm; zero outside.
   Eigen::Vector3d exit_displacement(const Eigen::Vector3d& p) const;
   /// Memory that it holds.
-  std::size_t bytes() const { return field_.memory_bytes() + surface_.bytes(); }
+  std::size_t bytes() const { return field_.memory_bytes() + surface_.get().bytes(); }
 
  private:
   /// Length of the field's gradient about p, by central differences: 1 before a smooth surface,
@@ -52,7 +54,7 @@ class ContactObstacle {
   Eigen::Vector3d patch_normal(const Eigen::Vector3d& p, const Eigen::Vector3d& own) const;
 
   DistanceField field_;
-  TriangleTree surface_;
+  MadeOnce<TriangleTree, TriMesh> surface_;  // few points need it, and some paths none
 };
 
 /// A point of the mesh near a surface that it must not penetrate.

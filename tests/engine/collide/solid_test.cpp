@@ -2,9 +2,13 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <random>
+#include <thread>
+#include <vector>
 
 #include "engine/collide/collision_mesh.h"
+#include "tests/support/allocated.h"
 #include "tests/support/boxes.h"
 #include "tests/support/shapes.h"
 
@@ -60,6 +64,40 @@ TEST(Solid, BallHoldsAllVertices) {
   const Solid solid(mesh);
   for (const auto& v : mesh.vertices)
     EXPECT_LE((v - solid.center()).norm(), solid.radius() + 1e-12);
+}
+
+TEST(Solid, TakesLittleMemoryUntilADepthIsAsked) {
+  const TriMesh mesh = test::sphere(5, 20);
+  const std::size_t before = allocated_bytes();
+  const Solid solid(mesh);
+  const std::size_t unasked = allocated_bytes() - before;
+  EXPECT_EQ(solid.face_count(), mesh.triangles.size());
+  EXPECT_NEAR(solid.radius(), 20, 1e-9);
+  EXPECT_EQ(allocated_bytes() - before, unasked);
+  const Solid away(test::sphere(1, 1, {30, 0, 0}));
+  EXPECT_FALSE(one_encloses_other(solid, {}, away, {}));
+  EXPECT_LT(allocated_bytes() - before, 2 * unasked);
+  EXPECT_GT(overlap_depth(solid, {}, Solid(test::sphere(1, 3, {20, 0, 0})), {}).depth_mm, 1);
+  EXPECT_GT(allocated_bytes() - before, 2 * unasked);
+}
+
+TEST(Solid, ThreadsThatAskAtOnceFindTheSame) {
+  const TriMesh mesh = test::sphere(5, 20, {0, 0, 0}, 0.2);
+  const Solid ball(test::sphere(3, 5, {18, 1, 2}));
+  const OverlapDepth alone = overlap_depth(Solid(mesh), {}, ball, {});
+  EXPECT_GT(alone.depth_mm, 1);
+  const Solid shared(mesh);
+  std::array<OverlapDepth, 4> found;
+  {
+    std::vector<std::jthread> threads;
+    for (OverlapDepth& one : found)
+      threads.emplace_back([&] { one = overlap_depth(shared, {}, ball, {}); });
+  }
+  for (const OverlapDepth& one : found) {
+    EXPECT_EQ(one.depth_mm, alone.depth_mm);
+    EXPECT_EQ(one.point, alone.point);
+    EXPECT_EQ(one.normal, alone.normal);
+  }
 }
 
 }  // namespace
