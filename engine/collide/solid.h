@@ -16,7 +16,7 @@ namespace condyle {
 /// The inside of a surface: the union of its closed shells (connected pieces). Open shells have no
 /// inside; closed shells that face inward within another one are cavities and are ignored; other
 /// closed shells that face inward are flipped. Body coordinates, moved by the pose alone. Queries
-/// are thread-safe; what only depths need is made for the first of them.
+/// are thread-safe; trees for depths and distances are made for the first of them.
 class Solid {
  public:
   /// Welded mesh. throws: InputError, see require_sound.

@@ -41,7 +41,7 @@ class ContactObstacle {
   bool near(const Eigen::Vector3d& p, double reach, Near& near) const;
   /// The shortest displacement out of the body for a point inside, mm; zero outside.
   Eigen::Vector3d exit_displacement(const Eigen::Vector3d& p) const;
-  /// Memory that it holds.
+  /// Memory that it holds with the tree, which is made where it is missing.
   std::size_t bytes() const { return field_.memory_bytes() + surface_.get().bytes(); }
 
  private:

@@ -55,7 +55,7 @@ struct PairVerdict {
   std::vector<double> clearance_mm;  // one per frame; negative: depth of the overlap
 
   bool violated() const { return collides || too_close || at_rest || coincide; }
-  /// No contact, and no gap to keep between a least and a greatest value.
+  /// The rule is kept without contact, and asks for no gap between a least and a greatest value.
   bool stays_apart() const {
     return !violated() && rule.policy != PairPolicy::guided && rest_depth_mm <= 0 &&
            beyond_rest_mm <= 0 && !first_touch;
