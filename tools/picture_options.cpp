@@ -73,8 +73,9 @@ void add_quality(CLI::App& command, PictureOptions& picture) {
       "--no-shadows", [&picture] { picture.shadows = false; }, "Draw no shadows");
   command.add_flag_callback(
       "--no-folds", [&picture] { picture.folds = false; },
-      "Draw the face without the folds of compressed skin and the hollows of the cheeks, which are "
-      "in pictures alone");
+      "Draw the face without what is in pictures alone: folds of compressed skin, and the hollows "
+      "of "
+      "the cheeks and the pad under the chin of an open mouth");
   command.add_flag("--life", picture.life,
                    "Look only: an opaque face blinks, looks around and breathes, and the head "
                    "extends as the jaw opens; nothing measured changes");

@@ -162,6 +162,8 @@ std::vector<Drawable> make_drawables(std::span<const Part* const> parts, const M
           positions, normals, drawables.back().triangles(), mouth_rim);
       drawables.back().hollows =
           std::make_shared<const CheekHollows>(positions, normals, mouth_rim, parts);
+      drawables.back().pad =
+          std::make_shared<const SubmentalPad>(positions, drawables.back().triangles(), mouth_rim);
     }
   }
   return drawables;
@@ -189,6 +191,7 @@ std::vector<Drawable> drawables_like(std::span<const Drawable> others) {
     drawables.back().behind_lashes = other.behind_lashes;
     drawables.back().folds = other.folds;
     drawables.back().hollows = other.hollows;
+    drawables.back().pad = other.pad;
   }
   return drawables;
 }
@@ -283,6 +286,7 @@ const GpuMesh& Drawable::rest_mesh() {
 void Drawable::move_face(std::vector<Eigen::Vector3f> positions, const FaceLook& look,
                          std::vector<Eigen::Vector3f>& normals_scratch) {
   even_rim(positions, uneven);
+  if (pad && look.folded) pad->apply(positions);
   auto shades = folds && look.folded ? folds->apply(positions) : std::vector<SkinFolds::Shade>{};
   if (hollows && look.folded)
     for (const SkinFolds::Shade& shade : hollows->apply(positions)) shades.push_back(shade);

@@ -10,6 +10,7 @@
 #include "render/face/cheek_hollows.h"
 #include "render/face/mouth_lining.h"
 #include "render/face/skin_folds.h"
+#include "render/face/submental_pad.h"
 #include "render/gl/gpu_mesh.h"
 #include "render/mesh/cover_grid.h"
 #include "render/mesh/creases.h"
@@ -45,6 +46,7 @@ struct Drawable {
   std::optional<GpuMesh> at_rest = {};          // of a deforming part, for its ghost
   std::shared_ptr<const SkinFolds> folds = {};  // of a face only
   std::shared_ptr<const CheekHollows> hollows = {};
+  std::shared_ptr<const SubmentalPad> pad = {};
 
   const GpuMesh& shown() const { return mapped && finer ? *finer : mesh; }
   /// The same surface in smaller triangles, for maps.
@@ -60,7 +62,7 @@ struct Drawable {
 
   /// Changes of a face's shape in pictures alone.
   struct FaceLook {
-    bool folded = true;  // with the folds of its skin and the hollows of its cheeks
+    bool folded = true;  // with folds of its skin, hollows of its cheeks and the pad under its chin
     // Moves its vertices and returns the shade of creases.
     std::function<std::vector<SkinFolds::Shade>(std::span<Eigen::Vector3f>)> alive = {};
     // Moves the places, at rest, that the fine relief of its skin is tied to.

@@ -132,7 +132,9 @@ void Panels::Drawing::look_overlays() {
   tooltip(pen, "L left, R right, A front, P back, S up, I down: the patient's");
   tick_box(pen, "shadows", "Shadows", view.shadows);
   tick_box(pen, "folds", "Folds of the skin", look.folds);
-  tooltip(pen, "Where the skin is compressed; in the picture alone, not in measures or exports");
+  tooltip(pen,
+          "Where the skin is compressed; also the hollows of the cheeks and the pad under the chin "
+          "of an open mouth. In the picture alone, not in measures or exports");
   tick_box(pen, "life", "Life (look only)", look.life);
   tooltip(pen,
           "An opaque face blinks, looks around and breathes while the motion plays, and the head "

@@ -5,73 +5,20 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "engine/mesh/triangle_tree.h"
-#include "render/face/drawn_face.h"
-#include "render/mesh/vertex_normals.h"
-#include "sim/phantom/phantom.h"
-#include "sim/simulator/simulator.h"
+#include "tests/render/face/opened_patient.h"
 
 namespace condyle {
 namespace {
 
 using Eigen::Vector3f;
 
-std::vector<Vector3f> floats(const TriMesh& mesh) {
-  std::vector<Vector3f> places;
-  for (const auto& p : mesh.vertices) places.push_back(p.cast<float>());
-  return places;
-}
-
-/// The built-in patient at rest and at two openings, with its drawn face.
-struct OpenedPatient {
-  SimulatorSettings settings = [] {
-    SimulatorSettings made;
-    made.face = true;
-    made.step_s = 1.0 / 60;
-    return made;
-  }();
-  Scene scene = make_scene(builtin_patient({}, {}), settings);
-  PreparedParts prepared{scene.patient.parts};
-  const Part* face = nullptr;
-  std::vector<const Part*> parts = {};
-  std::vector<Vector3f> rest = {}, normals = {};
-  std::optional<CheekHollows> hollows = {};
-
-  OpenedPatient() {
-    for (const Part& part : scene.patient.parts) {
-      parts.push_back(&prepared.drawn(part));
-      if (part.role == Role::face) face = parts.back();
-    }
-    rest = floats(face->mesh);
-    vertex_normals(rest, face->mesh.triangles, normals);
-    hollows.emplace(rest, normals, prepared.lining()->rim, parts);
-  }
-  FrameState frame(const std::string& words) {
-    const Motion motion = make_motion(words + " over 1", scene.patient, scene.contacts);
-    Playback playback(scene, motion, settings);
-    return playback.at(motion.duration_s);
-  }
-  std::vector<Vector3f> drawn(const FrameState& frame) const {
-    const DrawnFace* smoother = prepared.face_of(*face);
-    return smoother ? smoother->places(frame.face) : frame.face;
-  }
-  /// Corner of the mouth at rest. side: 1 left, -1 right.
-  Vector3f corner(float side) const {
-    Vector3f best = rest[static_cast<std::size_t>(prepared.lining()->rim.front())];
-    for (const int v : prepared.lining()->rim)
-      if (const Vector3f& p = rest[static_cast<std::size_t>(v)]; side * p.x() > side * best.x())
-        best = p;
-    return best;
-  }
-};
-
-OpenedPatient& opened_patient() {
-  static OpenedPatient made;
+const CheekHollows& hollows() {
+  static const OpenedPatient& p = opened_patient();
+  static const CheekHollows made(p.rest, p.normals, p.prepared.lining()->rim, p.parts);
   return made;
 }
 
@@ -87,7 +34,7 @@ float deepest(const std::vector<Vector3f>& smooth, const std::vector<Vector3f>& 
 
 TEST(CheekHollowsTest, RestStaysBitForBit) {
   auto places = opened_patient().rest;
-  EXPECT_TRUE(opened_patient().hollows->apply(places).empty());
+  EXPECT_TRUE(hollows().apply(places).empty());
   EXPECT_EQ(places, opened_patient().rest);
 }
 
@@ -101,7 +48,7 @@ TEST(CheekHollowsTest, AFaceWithoutAMouthOrJawsHasNone) {
   EXPECT_TRUE(no_rim.apply(stretched).empty());
   EXPECT_TRUE(no_jaws.apply(stretched).empty());
   EXPECT_EQ(stretched, before);
-  EXPECT_FALSE(p.hollows->apply(stretched).empty());
+  EXPECT_FALSE(hollows().apply(stretched).empty());
 }
 
 TEST(CheekHollowsTest, OpenedCheeksSinkInBesideTheCornersAndDeeperWithTheOpening) {
@@ -109,7 +56,7 @@ TEST(CheekHollowsTest, OpenedCheeksSinkInBesideTheCornersAndDeeperWithTheOpening
   for (const char* words : {"open 15", "open 30", "open 40"}) {
     const auto smooth = opened_patient().drawn(opened_patient().frame(words));
     auto sunken = smooth;
-    opened_patient().hollows->apply(sunken);
+    hollows().apply(sunken);
     const float left = deepest(smooth, sunken, 1), right = deepest(smooth, sunken, -1);
     EXPECT_NEAR(left, right, 0.3f) << words;
     RecordProperty(words, std::to_string(left));
@@ -131,7 +78,7 @@ TEST(CheekHollowsTest, SunkenCheeksStayClearOfJawsAndTeeth) {
   const FrameState frame = opened_patient().frame("open 40");
   const auto smooth = opened_patient().drawn(frame);
   auto sunken = smooth;
-  opened_patient().hollows->apply(sunken);
+  hollows().apply(sunken);
   std::size_t tested = 0;
   double nearest = 1e9;
   for (const Part* part : opened_patient().parts) {
