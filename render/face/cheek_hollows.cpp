@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/math/smooth_step.h"
 #include "engine/mesh/triangle_tree.h"
 
 namespace condyle {
@@ -15,15 +16,10 @@ constexpr float adult_width_mm = 50;  // of the mouth for which lengths are give
 constexpr float slack_stretch = 0.05f;
 constexpr float thickest_mm = 15;
 constexpr float share_of_clearance = 0.4f;
-constexpr float shade_per_mm = 0.04f, darkest_shade = 0.25f;
+constexpr float adult_shade_per_mm = 0.04f, darkest_shade = 0.25f;
 // Of the hollow, from the corner of the mouth: backward along the skin, and upward.
 constexpr float hollow_front_mm = 6, deep_from_mm = 22, deep_to_mm = 28, masseter_mm = 46;
 constexpr float hollow_height_mm = 4, hollow_half_height_mm = 17;
-
-float eased_in(float t) {
-  t = std::clamp(t, 0.f, 1.f);
-  return t * t * (3 - 2 * t);
-}
 
 /// A vertex of a cheek in the directions of its hollow.
 struct CheekPoint {
@@ -32,10 +28,10 @@ struct CheekPoint {
 };
 
 float hollow_weight(const CheekPoint& p) {
-  const float along = eased_in((p.back - hollow_front_mm) / (deep_from_mm - hollow_front_mm)) *
-                      eased_in((masseter_mm - p.back) / (masseter_mm - deep_to_mm));
+  const double along = smooth_step((p.back - hollow_front_mm) / (deep_from_mm - hollow_front_mm)) *
+                       smooth_step((masseter_mm - p.back) / (masseter_mm - deep_to_mm));
   const float up = (p.up - hollow_height_mm) / hollow_half_height_mm;
-  return along * std::exp(-up * up);
+  return static_cast<float>(along) * std::exp(-up * up);
 }
 
 /// Jaws and teeth within a box.
@@ -116,6 +112,7 @@ CheekHollows::CheekHollows(std::span<const Vector3f> rest, std::span<const Vecto
     }
     if (weights <= 0) continue;
     cheek.thickness_mm = thickness / weights;
+    cheek.shade_per_mm = adult_shade_per_mm / unit;
     for (std::size_t c = 0; c < columns; ++c)
       for (std::size_t r = 0; r < rows; ++r) {
         const float back = 16 + 8 * static_cast<float>(c), up = -23 + 8 * static_cast<float>(r);
@@ -170,7 +167,7 @@ std::vector<SkinFolds::Shade> CheekHollows::apply(std::vector<Vector3f>& places)
       if (asked <= 0 || member.limit_mm <= 0) continue;
       const float depth = asked * member.limit_mm / std::hypot(asked, member.limit_mm);
       places[static_cast<std::size_t>(member.vertex)] += depth * inward;
-      shades.push_back({member.vertex, 1 - std::min(shade_per_mm * depth, darkest_shade)});
+      shades.push_back({member.vertex, 1 - std::min(cheek.shade_per_mm * depth, darkest_shade)});
     }
   }
   return shades;

@@ -38,7 +38,8 @@ class CheekHollows {
     std::array<std::array<int, rows>, columns> gauge = {};  // vertices, upward; forward first
     std::array<float, columns> rest_mm = {};                // lengths of the columns
     float thickness_mm = 0;
-    float outward = 1;  // sign of the normal that the gauge gives
+    float shade_per_mm = 0;  // darkening over the depth
+    float outward = 1;       // sign of the normal that the gauge gives
     std::vector<Member> members = {};
   };
   static Eigen::Vector3f gauge_normal(const Cheek& cheek, std::span<const Eigen::Vector3f> places);
