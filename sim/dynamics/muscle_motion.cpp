@@ -200,7 +200,8 @@ Motion muscles_that_follow(const Motion& reference, const Case& patient,
         return excitations;
       });
   motion.expression = reference.expression;
-  motion.notes = reference.notes;
+  for (const std::string& note : reference.notes)
+    motion.notes.push_back("prescribed motion: " + note);
   for (std::string& note : notes_of(patient, jaw, settings))
     motion.notes.push_back(std::move(note));
   motion.notes.push_back(fmt::format(

@@ -90,7 +90,8 @@ TEST_F(MuscleMotion, MusclesThatFollowKeepTheNotesOfTheMotion) {
   const Motion prescribed = make("AU45 over 0.2"), found = make("inverse:AU45 over 0.2");
   ASSERT_FALSE(prescribed.notes.empty());
   for (const std::string& note : prescribed.notes)
-    EXPECT_EQ(std::count(found.notes.begin(), found.notes.end(), note), 1) << note;
+    EXPECT_EQ(std::count(found.notes.begin(), found.notes.end(), "prescribed motion: " + note), 1)
+        << note;
   EXPECT_GT(found.notes.size(), prescribed.notes.size());
 }
 
