@@ -155,7 +155,8 @@ TEST(CheckPage, SaysEachSentenceOnceAndNamesProgramDateAndSurfaces) {
   EXPECT_EQ(count(worst_moment(pair)), 1);
   EXPECT_EQ(count(worst_place(pair)), 1);
   EXPECT_EQ(count(fmt::format("{:.2f} mm apart", pair.min_distance_mm)),
-            1 + (pair.rest_distance_mm == pair.min_distance_mm));  // in the table, too
+            1 + (fmt::format("{:.2f}", pair.rest_distance_mm) ==
+                 fmt::format("{:.2f}", pair.min_distance_mm)));  // in the table, too
   EXPECT_EQ(count("Made by Condyle 1.2 on 2026-11-24 10:00 UTC."), 1);
   EXPECT_EQ(count("maxilla 0123, mandible 4567."), 1);
   EXPECT_EQ(count("closest first"), 1);
