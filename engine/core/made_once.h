@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -15,18 +16,25 @@ class MadeOnce {
   explicit MadeOnce(Source source) : state_(std::make_unique<State>(std::move(source))) {}
 
   const Made& get() const {
-    std::call_once(state_->once, [state = state_.get()] {
-      state->made.emplace(std::as_const(state->source));
-      state->source = {};
-    });
-    return *state_->made;
+    // Not std::call_once: after a maker that throws it hangs under a thread sanitizer.
+    State& state = *state_;
+    if (!state.ready.load(std::memory_order_acquire)) {
+      const std::scoped_lock lock(state.making);
+      if (!state.made) {
+        state.made.emplace(std::as_const(state.source));
+        state.source = {};
+        state.ready.store(true, std::memory_order_release);
+      }
+    }
+    return *state.made;
   }
 
  private:
   struct State {
     explicit State(Source from) : source(std::move(from)) {}
     Source source;
-    std::once_flag once;
+    std::mutex making;
+    std::atomic<bool> ready = false;
     std::optional<const Made> made;
   };
   std::unique_ptr<State> state_;
