@@ -76,6 +76,12 @@ void SurfaceBuffer::begin_light() {
   glDisable(GL_CULL_FACE);
 }
 
+void SurfaceBuffer::clear_light(const DrawnBox& box) const {
+  glScissor(box.x0, box.y0, box.width(), box.height());
+  constexpr GLfloat none[] = {0, 0, 0, 0};
+  glClearBufferfv(GL_COLOR, 0, none);
+}
+
 void SurfaceBuffer::light(int number, const DrawnBox& box) const {
   glScissor(box.x0, box.y0, box.width(), box.height());
   glStencilFunc(GL_EQUAL, number, 0xff);

@@ -26,6 +26,8 @@ class SurfaceBuffer {
   void number_surface(int number) const;
   /// From here to `end`, only pixels of the numbered surface are drawn, lit, within a box.
   void begin_light();
+  /// Makes all pixels of the box unlit: 0 in each channel.
+  void clear_light(const DrawnBox& box) const;
   void light(int number, const DrawnBox& box) const;
   void end() const;
 

@@ -50,15 +50,31 @@ void bind_texture(GLenum unit, GLuint texture) {
   glBindTexture(GL_TEXTURE_2D, texture);
 }
 
+/// A box with a margin of one pixel, since edge filters read a pixel's neighbours, in whole tiles:
+/// Mesa's rasteriser has one program for whole tiles and another for partial ones, with different
+/// rounding.
+DrawnBox whole_tiles(const DrawnBox& box, const PictureView& view) {
+  constexpr int tile = 64;
+  const auto down = [](int x) { return x / tile * tile; };
+  return DrawnBox{down(std::max(0, box.x0 - 1)), down(std::max(0, box.y0 - 1)), down(box.x1 + tile),
+                  down(box.y1 + tile)}
+      .both({0, 0, view.width, view.height});
+}
+
+/// The pixels that a part may cover.
+DrawnBox box_of(const DrawItem& item, const PictureView& view) {
+  PictureBounds bounds(view.width, view.height, view.view_projection);
+  bounds.add(surface_of(item, view).box, item.model);
+  return bounds.box(1);
+}
+
+/// Whether the surface buffer can store a part in pictures of this size.
+bool can_store(const DrawItem& item, const PictureView& view) {
+  return SurfaceBuffer::fits(view.width, view.height) && !item.cut() && !item.drawable->mapped;
+}
+
 /// Lit pixels store the number of their surface in place of their opacity.
 float number_of(std::size_t item) { return static_cast<float>(item + 1) / 255; }
-
-/// Calls for each face that hides surfaces behind it.
-template <class Add>
-void each_covering(std::span<const DrawItem> items, const Add& add) {
-  for (const auto& item : items)
-    if (item.role() == Role::face && item.opaque() && !item.cut()) add(item);
-}
 
 }  // namespace
 
@@ -111,6 +127,7 @@ Passes::Passes()
       marker_("marker", marker_shaders()),
       carry_("carry", carry_shaders()),
       place_("place", place_shaders()),
+      blend_("blend", blend_shaders()),
       edges_("edges", edge_shaders()),
       inner_("inner", inner_shaders()),
       shadow_map_(shadow_side),
@@ -239,13 +256,16 @@ GlProgram& Passes::begin(Programs& programs, const DrawItem& item, const Picture
   shadow_map_.bind_depths(4);
   glActiveTexture(GL_TEXTURE0);
   glBindTexture(GL_TEXTURE_2D, shadow_map_.texture());
-  GlProgram& program = programs.of({.shadowed = view.shadows,
+  // On skin like glass pores and shadows are hardly visible, and both take long to draw.
+  constexpr double glass_opacity = 0.5;
+  const bool glass = role == Role::face && item.opacity < glass_opacity;
+  GlProgram& program = programs.of({.shadowed = view.shadows && !glass,
                                     .mapped = mapped,
                                     .coated = material.coat > 0,
                                     .cuttable = item.cut(),
                                     .seen_through = !item.opaque(),
                                     .skin = role == Role::face,
-                                    .smooth_skin = role == Role::face && view.coarse,
+                                    .smooth_skin = role == Role::face && (view.coarse || glass),
                                     .deferred = deferred});
   program.use();
   view.lights.set_in(program);
@@ -311,16 +331,7 @@ void Passes::shade_interior(const DrawItem& item, const PictureView& view) {
 void Passes::deferred(std::span<const DrawItem> items, const PictureView& view) {
   GLint target = 0;
   glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &target);
-  // Edge filters read a pixel's neighbours. Whole tiles are lit: Mesa's rasteriser has one program
-  // for whole tiles and another for partial ones, with different rounding.
-  constexpr int tile = 64;
-  const auto down = [](int x) { return x / tile * tile; };
-  const auto around_of = [&](const DrawnBox& box) {
-    return DrawnBox{down(std::max(0, box.x0 - 1)), down(std::max(0, box.y0 - 1)),
-                    down(box.x1 + tile), down(box.y1 + tile)}
-        .both({0, 0, view.width, view.height});
-  };
-  const DrawnBox around = around_of(view.box);
+  const DrawnBox around = whole_tiles(view.box, view);
   buffer_.fit(view.width, view.height);
   buffer_.begin_surfaces(around);
   std::vector<char> seen(items.size(), 0);
@@ -339,9 +350,7 @@ void Passes::deferred(std::span<const DrawItem> items, const PictureView& view) 
 
   buffer_.begin_light();
   for (std::size_t i = 0; i < items.size(); ++i) {
-    PictureBounds bounds(view.width, view.height, view.view_projection);
-    bounds.add(surface_of(items[i], view).box, items[i].model);
-    const DrawnBox box = around_of(bounds.box(1)).both(around);
+    const DrawnBox box = whole_tiles(box_of(items[i], view), view).both(around);
     if (!seen[i] || box.empty()) continue;
     GlProgram& program =
         begin(items[i].role() == Role::face ? skins_ : surfaces_, items[i], view, true);
@@ -440,25 +449,30 @@ void Passes::place_sampled(std::span<const DrawItem> items, const std::vector<ch
   glDisable(GL_STENCIL_TEST);
 }
 
-void Passes::opaque(std::span<const DrawItem> items, const PictureView& view) {
+void Passes::cover_by(std::span<const DrawItem> faces, const PictureView& view) {
   cover_.start(view.width, view.height, view.view_projection);
-  if (view.may_cull)
-    each_covering(items, [&](const DrawItem& item) {
-      const auto& mesh = item.drawable->mesh;
-      const auto& surface = surface_of(item, view);
-      const bool coarse = &surface == &mesh.coarse();
-      cover_.add(mesh.points(), surface.corners, surface.triangles,
-                 coarse ? *item.drawable->coarse_edges : *item.drawable->edges, item.model);
-    });
+  for (const auto& item : faces) {
+    if (!view.may_cull || item.cut()) continue;
+    const auto& mesh = item.drawable->mesh;
+    const auto& surface = surface_of(item, view);
+    const bool coarse = &surface == &mesh.coarse();
+    cover_.add(mesh.points(), surface.corners, surface.triangles,
+               coarse ? *item.drawable->coarse_edges : *item.drawable->edges, item.model);
+  }
   cover_.finish();
+}
+
+void Passes::opaque(std::span<const DrawItem> items, const PictureView& view) {
+  std::vector<DrawItem> covering;
+  for (const auto& item : items)
+    if (item.role() == Role::face && item.opaque()) covering.push_back(item);
+  cover_by(covering, view);
   // The face hides most of the rest: drawn first, it avoids shading hidden surfaces.
   std::vector<DrawItem> whole, others;
-  const bool fits = SurfaceBuffer::fits(view.width, view.height);
   for (const bool face : {true, false})
     for (const auto& item : items) {
       if (!item.opaque() || (item.role() == Role::face) != face) continue;
-      const bool kept = fits && !item.cut() && !item.drawable->mapped &&
-                        std::ssize(whole) < SurfaceBuffer::max_surfaces;
+      const bool kept = can_store(item, view) && std::ssize(whole) < SurfaceBuffer::max_surfaces;
       (kept ? whole : others).push_back(item);
     }
   has_backdrop_ = false;
@@ -473,15 +487,62 @@ void Passes::opaque(std::span<const DrawItem> items, const PictureView& view) {
   for (const auto& item : others) shade(item, view);
 }
 
-void Passes::depth_only(const DrawItem& item, const PictureView& view) {
-  cull_by_closure(item);
+void Passes::deferred_front(const DrawItem& item, const PictureView& view) {
+  GLint target = 0;
+  glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &target);
+  const DrawnBox around = whole_tiles(box_of(item, view), view).both(whole_tiles(view.box, view));
+  const auto& chosen = seen_of(item, view);
+  if (chosen.empty() || around.empty()) return;
+  buffer_.fit(view.width, view.height);
+  buffer_.begin_surfaces(around);
+  buffer_.number_surface(1);
+  GlProgram& keep = kept_.of({.skin = item.role() == Role::face});
+  keep.use();
+  place(keep, item, view);
+  item.mesh().draw(chosen);
+  end_cut();
+  if (item.role() == Role::face) {  // its inner side hides it, and is not stored
+    buffer_.number_surface(0);
+    depth_only(item, view, Sides::back);
+  }
+  glFlush();
+
+  buffer_.begin_light();
+  buffer_.clear_light(around);
+  GlProgram& program = begin(item.role() == Role::face ? skins_ : surfaces_, item, view, true);
+  see_stored(program);
+  view.set_rays_in(program);
+  glBindVertexArray(no_attributes_);
+  buffer_.light(1, around);
+  buffer_.end();
+  end_cut();
+
+  glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(target));
+  const DrawnBox box = around.both(view.box);
+  glScissor(box.x0, box.y0, box.width(), box.height());
+  blend_.use();
+  see_lit(blend_, view);
+  glDisable(GL_CULL_FACE);
+  glEnable(GL_BLEND);
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  glDisable(GL_BLEND);
+  glScissor(view.box.x0, view.box.y0, view.box.width(), view.box.height());
+}
+
+void Passes::depth_only(const DrawItem& item, const PictureView& view, Sides sides) {
+  if (sides == Sides::back) {
+    glEnable(GL_CULL_FACE);
+    glCullFace(GL_FRONT);
+  } else {
+    cull_by_closure(item);
+  }
   depth_.use();
   depth_.set("view_projection", view.view_projection);
   begin_cut(depth_, item, view);
   depth_.set("model", item.model);
   glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
   item.mesh().draw(visibility_.choose(item.mesh(), surface_of(item, view), item.model, eye_of(view),
-                                      sides_of(item), &cover_));
+                                      sides, &cover_));
   end_cut();
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
 }
@@ -498,10 +559,18 @@ void Passes::translucent(std::span<const DrawItem> items, const PictureView& vie
   // Colours are premultiplied when they are blended, so that an empty background stays exact.
   glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
   for (const auto& item : order) {
-    depth_only(item, view);
+    const bool stored = view.one_sample && can_store(item, view);
+    const bool face = item.role() == Role::face;
+    if (face) cover_by({&item, 1}, view);  // the last: its inner side is mostly hidden
+    if (stored) deferred_front(item, view);
+    if (stored && !face) continue;
+    depth_only(item, view, stored ? Sides::back : sides_of(item));
     glDepthFunc(GL_EQUAL);
     glEnable(GL_BLEND);
-    shade(item, view);
+    if (stored)
+      shade_interior(item, view);
+    else
+      shade(item, view);
     glDisable(GL_BLEND);
     glDepthFunc(GL_LESS);
   }

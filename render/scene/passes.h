@@ -136,16 +136,20 @@ class Passes {
   void shade_interior(const DrawItem& item, const PictureView& view);
   /// Deferred shading of all of these, each visible pixel lit once.
   void deferred(std::span<const DrawItem> items, const PictureView& view);
+  /// Deferred shading of the front of a translucent item: blends it into a picture of one sample.
+  void deferred_front(const DrawItem& item, const PictureView& view);
   /// Copies the lit pixels into the picture, with their depth: of one sample, with the backdrop, or
   /// of several.
   void place_all(const PictureView& view);
   void find_edges(const PictureView& view);
   void place_sampled(std::span<const DrawItem> items, const std::vector<char>& seen,
                      const PictureView& view, GLuint target);
-  void depth_only(const DrawItem& item, const PictureView& view);
+  /// Makes these faces, where they are whole, hide what is drawn next.
+  void cover_by(std::span<const DrawItem> faces, const PictureView& view);
+  void depth_only(const DrawItem& item, const PictureView& view, Sides sides);
 
   Programs surfaces_, skins_, interiors_, kept_;
-  GlProgram depth_, marker_, carry_, place_, edges_, inner_;
+  GlProgram depth_, marker_, carry_, place_, blend_, edges_, inner_;
   GlVertexArray no_attributes_;
   SurfaceBuffer buffer_;
   Background background_;
@@ -154,7 +158,7 @@ class Passes {
   ColourMap colour_map_;
   DepthMap shadow_map_;
   Visibility visibility_;
-  CoverGrid cover_;  // by the opaque face
+  CoverGrid cover_;  // by the opaque face, or a translucent one while it is drawn
   EdgePixels edge_pixels_;
   bool software_;  // no card
 };

@@ -27,6 +27,7 @@ ShaderSource interior_shaders(const Shading&);
 ShaderSource keep_shaders(const Shading&);  // inputs of lighting, per pixel
 ShaderSource carry_shaders();               // copies the lit pixels, surface by surface
 ShaderSource place_shaders();               // or all at once
+ShaderSource blend_shaders();               // blends lit pixels of one surface
 ShaderSource edge_shaders();                // marks the pixels with edges of surfaces
 ShaderSource inner_shaders();               // copies the others into every sample
 ShaderSource depth_shaders();  // only depth: shadow map and prepass of translucent parts

@@ -141,6 +141,19 @@ void main() {
 }
 )";
 
+// Blends a translucent surface, in pictures with one sample per pixel. Where it is not, it is
+// unlit.
+const char* const blend_source = R"(
+uniform sampler2D kept_depth, lit;
+out vec4 result;
+void main() {
+  ivec2 at = ivec2(gl_FragCoord.xy);
+  result = texelFetch(lit, at, 0);
+  if (result.a == 0.0) discard;
+  gl_FragDepth = texelFetch(kept_depth, at, 0).r;
+}
+)";
+
 // Marks the pixels in which surfaces may have an edge: where neighbours belong to another one, or
 // depth is not steady.
 const char* const edge_source = R"(
@@ -186,6 +199,9 @@ ShaderSource carry_shaders() { return {surface_vertices(), shading_constants({})
 ShaderSource place_shaders() {
   return {shading_constants({}) + whole_picture_source,
           shading_constants({}) + backdrop_source + place_source};
+}
+ShaderSource blend_shaders() {
+  return {shading_constants({}) + whole_picture_source, shading_constants({}) + blend_source};
 }
 ShaderSource edge_shaders() {
   return {shading_constants({}) + whole_picture_source, shading_constants({}) + edge_source};

@@ -158,6 +158,39 @@ TEST_F(Scene, HalfOpaqueSkinShowsWhatLiesUnderItBetweenBothPictures) {
   EXPECT_LT(half, bone - 5);
 }
 
+TEST_F(Scene, TranslucentSkinOfOneSampleIsThatOfSeveral) {
+  // One sample is lit after all is drawn, several while it is. A mouth shows the inner side.
+  TriMesh head = ball({0, 0, 0}, 35);
+  std::erase_if(head.triangles, [&](const Eigen::Vector3i& t) {
+    const Eigen::Vector3d& p = head.vertices[static_cast<std::size_t>(t[0])];
+    return p.y() < 0 && std::hypot(p.x(), p.z() + 8) < 12;
+  });
+  const std::vector<Part> parts = {make_part("skull", Role::skull, ball({9, 0, 12}, 14)),
+                                   make_part("face", Role::face, head)};
+  SceneRenderer renderer(parts);
+  PictureSettings settings;
+  settings.width = settings.height = 300;
+  settings.smooth_edges = false;
+  for (const double opacity : {0.3, 0.7}) {
+    SCOPED_TRACE(opacity);
+    settings.skin_opacity = opacity;
+    settings.samples = 1;
+    const Image plain = renderer.picture(front_camera(), settings);
+    settings.samples = 4;
+    const Image sampled = renderer.picture(front_camera(), settings);
+    int unlike = 0;
+    for (int y = 0; y < 300; ++y)
+      for (int x = 0; x < 300; ++x) {
+        const auto a = pixel(plain, x, y), b = pixel(sampled, x, y);
+        unlike += std::max({std::abs(a.r - b.r), std::abs(a.g - b.g), std::abs(a.b - b.b)}) > 3;
+      }
+    EXPECT_LT(unlike, 1500);  // along the outlines
+    settings.skin_opacity = 0;
+    settings.samples = 1;
+    EXPECT_TRUE(test::unlike(plain, renderer.picture(front_camera(), settings), 0.01));
+  }
+}
+
 TEST_F(Scene, TheMandibleMovesByItsPoseAndTheSkullStays) {
   const std::vector<Part> jaw = {make_part("mandible", Role::mandible, ball({0, 0, 0}, 15)),
                                  make_part("skull", Role::skull, ball({0, 0, 30}, 5))};
