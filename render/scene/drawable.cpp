@@ -8,6 +8,7 @@
 #include "engine/core/user_cache.h"
 #include "engine/mesh/triangle_tree.h"
 #include "render/face/lashes.h"
+#include "render/face/neck_cut.h"
 #include "render/face/shade_layers.h"
 #include "render/face/skin_folds.h"
 #include "render/mesh/ambient_occlusion.h"
@@ -158,6 +159,7 @@ std::vector<Drawable> make_drawables(std::span<const Part* const> parts, const M
       drawables.back().behind_lashes =
           skin_about(part.mesh, lash_radius, face == parts.end() ? nullptr : &(*face)->mesh);
     if (!mouth_rim.empty()) {
+      drawables.back().neck_cut = find_neck_cut(positions, drawables.back().triangles(), mouth_rim);
       drawables.back().folds = std::make_shared<const SkinFolds>(
           positions, normals, drawables.back().triangles(), mouth_rim);
       drawables.back().hollows =
@@ -192,6 +194,7 @@ std::vector<Drawable> drawables_like(std::span<const Drawable> others) {
     drawables.back().folds = other.folds;
     drawables.back().hollows = other.hollows;
     drawables.back().pad = other.pad;
+    drawables.back().neck_cut = other.neck_cut;
   }
   return drawables;
 }

@@ -259,6 +259,8 @@ GlProgram& Passes::begin(Programs& programs, const DrawItem& item, const Picture
   // On skin like glass pores and shadows are hardly visible, and both take long to draw.
   constexpr double glass_opacity = 0.5;
   const bool glass = role == Role::face && item.opacity < glass_opacity;
+  const auto& neck_cut = item.drawable->neck_cut;
+  const bool vanishing = neck_cut && !mapped && !item.cut() && view.backdrop;
   GlProgram& program = programs.of({.shadowed = view.shadows && !glass,
                                     .mapped = mapped,
                                     .coated = material.coat > 0,
@@ -266,6 +268,7 @@ GlProgram& Passes::begin(Programs& programs, const DrawItem& item, const Picture
                                     .seen_through = !item.opaque(),
                                     .skin = role == Role::face,
                                     .smooth_skin = role == Role::face && (view.coarse || glass),
+                                    .vanishing = vanishing,
                                     .deferred = deferred});
   program.use();
   view.lights.set_in(program);
@@ -284,6 +287,11 @@ GlProgram& Passes::begin(Programs& programs, const DrawItem& item, const Picture
   program.set("scatter", material.scatter);
   program.set("coat", material.coat);
   program.set("open_mouth", view.sectioned ? 1.f : 1 - view.at_rest);
+  if (vanishing) {
+    constexpr float gone_mm = 12, over_mm = 38;  // above the cut
+    program.set("neck_end", Eigen::Vector2f(*neck_cut + gone_mm, 1 / over_mm));
+    Background::set_in(program, view.width, view.height, *view.backdrop);
+  }
   program.set("mapped_up_to", view.mapped_up_to);
   program.set("colour_table", 2);
   if (mapped) {

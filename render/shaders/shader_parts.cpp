@@ -108,6 +108,7 @@ std::string shading_constants(const Shading& shading) {
   fixed("seen_through", shading.seen_through);
   fixed("skin", shading.skin);
   fixed("smooth_skin", shading.smooth_skin);
+  fixed("vanishing", shading.vanishing);
   const auto number = [&](const char* name, int value) {
     text += std::string("const float ") + name + " = " + std::to_string(value) + ".0;\n";
   };

@@ -243,6 +243,13 @@ uniform sampler3D skin_detail;  // slope of a rough surface, and its height
 uniform float open_mouth;  // 0 at rest, 1 with the jaw far open
 uniform float pixel_size;       // of a pixel at distance 1
 
+// Fraction of the skin that remains visible towards the cut of the neck.
+uniform vec2 neck_end;  // height at rest where it has vanished, mm; 1 / mm over which it does
+float visible() {
+  float height = rest_place.z > 0.5 * rest_period ? rest_place.z - rest_period : rest_place.z;
+  return vanishing ? smoothstep(0.0, 1.0, (height - neck_end.x) * neck_end.y) : 1.0;
+}
+
 // The field at a position, at the level of detail of a pixel's size on the surface.
 vec4 detail(vec3 place, float period, float pixel_mm) {
   if (smooth_skin) return vec4(0.0);
@@ -293,8 +300,13 @@ void main() {
   vec3 c = albedo * mix(vec3(1.0), vec3(pore), vec3(0.05, 0.10, 0.12)) * light
          + mix(0.028, 0.05, gloss) * shine;
   c += 0.5 * ambient_light(reflect(-v, n), v) * fresnel(nv, 0.028) * (1.0 - wide) * open;
-  float a = seen_through ? 1.0 - pow(1.0 - opacity, 1.0 / max(nv, 0.35)) : opacity;
-  result = vec4(display(c), a);
+  vec3 shown = display(c);
+  float a = opacity;
+  if (seen_through)
+    a = visible() * (1.0 - pow(1.0 - opacity, 1.0 / max(nv, 0.35)));
+  else if (vanishing)
+    shown = mix(backdrop(), shown, visible());
+  result = vec4(shown, a);
 }
 )";
 
@@ -390,7 +402,9 @@ ShaderSource cap_shaders() { return lit({}, cap_source); }
 ShaderSource tint_shaders() { return lit({}, tint_source); }
 ShaderSource fibre_shaders() { return lit({}, fibre_source); }
 ShaderSource surface_shaders(const Shading& shading) { return lit(shading, surface_source); }
-ShaderSource skin_shaders(const Shading& shading) { return lit(shading, skin_source); }
+ShaderSource skin_shaders(const Shading& shading) {
+  return lit(shading, (std::string(backdrop_source) + skin_source).c_str());
+}
 ShaderSource interior_shaders(const Shading& shading) { return lit(shading, interior_source); }
 
 }  // namespace condyle
