@@ -21,6 +21,8 @@
 
 namespace condyle {
 
+inline constexpr float lash_pixels = 0.5f;  // least radius
+
 /// A drawable with its settings in one picture.
 struct DrawItem {
   Drawable* drawable;
