@@ -26,7 +26,7 @@ class SurfaceBuffer {
   void number_surface(int number) const;
   /// From here to `end`, only pixels of the numbered surface are drawn, lit, within a box.
   void begin_light();
-  /// Makes all pixels of the box unlit: 0 in each channel.
+  /// Sets the light within the box to 0.
   void clear_light(const DrawnBox& box) const;
   void light(int number, const DrawnBox& box) const;
   void end() const;
@@ -43,7 +43,7 @@ class SurfaceBuffer {
   GlFramebuffer surfaces_, light_;
   GlTexture words_;  // RGBA, 32 bit: see the shaders
   GlTexture away_;   // distance from the eye, mm; huge where nothing is
-  GlTexture lit_;    // as displayed, and the surface's number
+  GlTexture lit_;    // as displayed, and the surface's number or opacity
   GlTexture depth_;  // of the window, with the numbers as stencil
   struct Marked {
     GlFramebuffer target;

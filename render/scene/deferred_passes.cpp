@@ -29,7 +29,7 @@ DrawnBox box_of(const DrawItem& item, const PictureView& view) {
   return bounds.box(1);
 }
 
-/// Lit pixels store the number of their surface in place of their opacity.
+/// Lit pixels of opaque surfaces store the number of their surface in place of their opacity.
 float number_of(std::size_t item) { return static_cast<float>(item + 1) / 255; }
 
 }  // namespace
@@ -169,7 +169,8 @@ void Passes::deferred_front(const DrawItem& item, const PictureView& view) {
   place(keep, item, view);
   item.mesh().draw(chosen);
   end_cut();
-  if (item.role() == Role::face) {  // its inner side hides it, and is not stored
+  if (item.role() == Role::face && !item.drawable->closed) {
+    // Where its inner side is nearer, the front is hidden.
     buffer_.number_surface(0);
     depth_only(item, view, Sides::back);
   }

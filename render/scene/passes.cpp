@@ -232,7 +232,7 @@ GlProgram& Passes::begin(Programs& programs, const DrawItem& item, const Picture
   constexpr double glass_opacity = 0.5;
   const bool glass = role == Role::face && item.opacity < glass_opacity;
   const auto& neck_cut = item.drawable->neck_cut;
-  const bool vanishing = neck_cut && !mapped && !item.cut() && view.backdrop;
+  const bool vanishing = neck_cut && !mapped && !item.clipped && view.backdrop;
   GlProgram& program = programs.of({.shadowed = view.shadows && !glass,
                                     .mapped = mapped,
                                     .coated = material.coat > 0,
@@ -378,9 +378,9 @@ void Passes::translucent(std::span<const DrawItem> items, const PictureView& vie
   for (const auto& item : order) {
     const bool stored = view.one_sample && can_store(item, view);
     const bool face = item.role() == Role::face;
-    if (face) cover_by({&item, 1}, view);  // the last: its inner side is mostly hidden
+    if (face) cover_by({&item, 1}, view);  // drawn last; it hides most of its inner side
     if (stored) deferred_front(item, view);
-    if (stored && !face) continue;
+    if (stored && (!face || item.drawable->closed)) continue;
     depth_only(item, view, stored ? Sides::back : sides_of(item));
     glDepthFunc(GL_EQUAL);
     glEnable(GL_BLEND);

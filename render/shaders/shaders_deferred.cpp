@@ -141,8 +141,8 @@ void main() {
 }
 )";
 
-// Blends a translucent surface, in pictures with one sample per pixel. Where it is not, it is
-// unlit.
+// Blends a translucent surface, in pictures with one sample per pixel. Pixels that it does not
+// cover have opacity 0.
 const char* const blend_source = R"(
 uniform sampler2D kept_depth, lit;
 out vec4 result;

@@ -246,8 +246,9 @@ uniform float pixel_size;       // of a pixel at distance 1
 // Fraction of the skin that remains visible towards the cut of the neck.
 uniform vec2 neck_end;  // height at rest where it has vanished, mm; 1 / mm over which it does
 float visible() {
-  float height = rest_place.z > 0.5 * rest_period ? rest_place.z - rest_period : rest_place.z;
-  return vanishing ? smoothstep(0.0, 1.0, (height - neck_end.x) * neck_end.y) : 1.0;
+  // Stored places are known up to the period.
+  float above = mod(rest_place.z - neck_end.x + 0.5 * rest_period, rest_period) - 0.5 * rest_period;
+  return vanishing ? smoothstep(0.0, 1.0, above * neck_end.y) : 1.0;
 }
 
 // The field at a position, at the level of detail of a pixel's size on the surface.
@@ -303,7 +304,8 @@ void main() {
   vec3 shown = display(c);
   float a = opacity;
   if (seen_through)
-    a = visible() * (1.0 - pow(1.0 - opacity, 1.0 / max(nv, 0.35)));
+    // Above 0, as it hides its inner side.
+    a = max(visible() * (1.0 - pow(1.0 - opacity, 1.0 / max(nv, 0.35))), 1.0 / 255.0);
   else if (vanishing)
     shown = mix(backdrop(), shown, visible());
   result = vec4(shown, a);

@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "tests/render/face/opened_patient.h"
@@ -28,10 +31,15 @@ TEST(NeckCut, IsTheLowerEndOfAClosedNeck) {
 TEST(NeckCut, IsNotFoundInANeckThatIsOpenBelow) {
   const OpenedPatient& p = opened_patient();
   const auto& rim = p.prepared.lining()->rim;
-  const float low = *find_neck_cut(p.rest, p.face->mesh.triangles, rim);
   std::vector<Eigen::Vector3i> open = p.face->mesh.triangles;
+  const float low = *find_neck_cut(p.rest, open, rim);
+  const auto corner = [&](const Eigen::Vector3i& t, int k) -> const Vector3f& {
+    return p.rest[static_cast<std::size_t>(t[k])];
+  };
   std::erase_if(open, [&](const Eigen::Vector3i& t) {
-    return p.rest[static_cast<std::size_t>(t[0])].z() < low + 25;
+    const Vector3f n =
+        (corner(t, 1) - corner(t, 0)).cross(corner(t, 2) - corner(t, 0)).normalized();
+    return corner(t, 0).z() < low + 45 && n.z() < -0.8f;
   });
   EXPECT_FALSE(find_neck_cut(p.rest, open, rim));
 }
@@ -52,37 +60,77 @@ TEST(NeckCut, IsNotFoundNearTheChin) {
 
 using NeckPictures = WithContext;
 
-TEST_F(NeckPictures, ANeckVanishesTowardsItsCut) {
-  const Case& patient = opened_patient().scene.patient;
-  SceneRenderer renderer(patient.parts);
-  PictureSettings settings;
-  settings.width = settings.height = 240;
-  const Part& face = *patient.find(Role::face);
-  const auto by_height = [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-    return a.z() < b.z();
-  };
-  Camera below = front_camera();
-  below.target = *std::min_element(face.mesh.vertices.begin(), face.mesh.vertices.end(), by_height);
-  below.direction = {0, 0, -1};
-  below.up = {0, -1, 0};
-  const auto picture = [&](double opacity) {
-    settings.skin_opacity = opacity;
-    return renderer.picture(below, settings);
-  };
-  SceneRenderer empty(std::span<const Part>{});
+/// Pictures of the built-in patient, moved up by so much, from below the end of its neck.
+class NeckPicture {
+ public:
+  explicit NeckPicture(double up_mm) : parts_(opened_patient().scene.patient.parts) {
+    double low = 1e9;
+    for (Part& part : parts_)
+      for (auto& v : part.mesh.vertices) {
+        v.z() += up_mm;
+        if (part.role == Role::face && v.z() < low) low = v.z(), below_.target = v;
+      }
+    below_.direction = {0, 0, -1};
+    below_.up = {0, -1, 0};
+    front_.target = below_.target + Eigen::Vector3d(0, 0, 60);
+    settings_.width = settings_.height = 240;
+    renderer_.emplace(parts_);
+  }
+  Image below(double opacity, int samples) { return picture(below_, opacity, samples); }
+  Image front(double opacity, int samples) { return picture(front_, opacity, samples); }
+  Image background(int samples) {
+    settings_.samples = samples;
+    return SceneRenderer(std::span<const Part>{}).picture(below_, settings_);
+  }
+  Image without_background() {
+    settings_.transparent = true;
+    return below(1, 1);
+  }
+
+ private:
+  Image picture(const Camera& camera, double opacity, int samples) {
+    settings_.skin_opacity = opacity;
+    settings_.samples = samples;
+    return renderer_->picture(camera, settings_);
+  }
+  std::vector<Part> parts_;
+  Camera below_ = front_camera(), front_ = front_camera(150);
+  PictureSettings settings_;
+  std::optional<SceneRenderer> renderer_;
+};
+
+void expect_alike(const Pixel& a, const Pixel& b) {
+  EXPECT_NEAR(a.r, b.r, 2);
+  EXPECT_NEAR(a.g, b.g, 2);
+  EXPECT_NEAR(a.b, b.b, 2);
+}
+
+TEST_F(NeckPictures, VanishTowardsTheCut) {
+  NeckPicture neck(0);
   for (const int samples : {1, 4}) {
     SCOPED_TRACE(samples);
-    settings.samples = samples;
-    const auto expect_alike = [](const Pixel& a, const Pixel& b) {
-      EXPECT_NEAR(a.r, b.r, 2);
-      EXPECT_NEAR(a.g, b.g, 2);
-      EXPECT_NEAR(a.b, b.b, 2);
-    };
-    expect_alike(pixel(picture(1), 120, 120), pixel(empty.picture(below, settings), 120, 120));
-    expect_alike(pixel(picture(0.4), 120, 120), pixel(picture(0), 120, 120));  // bones
+    expect_alike(pixel(neck.below(1, samples), 120, 120),
+                 pixel(neck.background(samples), 120, 120));
+    expect_alike(pixel(neck.below(0.4, samples), 120, 120),  // bones
+                 pixel(neck.below(0, samples), 120, 120));
   }
-  settings.transparent = true;  // nothing to vanish into
-  EXPECT_EQ(pixel(picture(1), 120, 120).a, 255);
+  EXPECT_EQ(pixel(neck.without_background(), 120, 120).a, 255);  // nothing to vanish into
+}
+
+TEST_F(NeckPictures, AreTheSameAtAnyHeight) {
+  const Image here = NeckPicture(0).front(1, 1);
+  for (const double up_mm : {-1000.0, 800.0, 1000.0}) {
+    NeckPicture moved(up_mm);
+    for (const int samples : {1, 4}) {
+      SCOPED_TRACE(std::to_string(up_mm) + ", " + std::to_string(samples));
+      EXPECT_TRUE(test::alike(here, moved.front(1, samples), 0.02));
+    }
+  }
+}
+
+TEST_F(NeckPictures, ShowNoInnerSideThroughIt) {
+  NeckPicture neck(0);
+  EXPECT_TRUE(test::alike(neck.front(0.3, 1), neck.front(0.3, 4), 0.004));
 }
 
 }  // namespace

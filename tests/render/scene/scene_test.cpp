@@ -159,7 +159,7 @@ TEST_F(Scene, HalfOpaqueSkinShowsWhatLiesUnderItBetweenBothPictures) {
 }
 
 TEST_F(Scene, TranslucentSkinOfOneSampleIsThatOfSeveral) {
-  // One sample is lit after all is drawn, several while it is. A mouth shows the inner side.
+  // Shaded deferred with one sample, forward with several. A mouth shows the inner side.
   TriMesh head = ball({0, 0, 0}, 35);
   std::erase_if(head.triangles, [&](const Eigen::Vector3i& t) {
     const Eigen::Vector3d& p = head.vertices[static_cast<std::size_t>(t[0])];
@@ -188,6 +188,38 @@ TEST_F(Scene, TranslucentSkinOfOneSampleIsThatOfSeveral) {
     settings.skin_opacity = 0;
     settings.samples = 1;
     EXPECT_TRUE(test::unlike(plain, renderer.picture(front_camera(), settings), 0.01));
+  }
+}
+
+TEST_F(Scene, SeveralTranslucentPartsOfOneSampleAreThoseOfSeveral) {
+  TriMesh shell = ball({0, 0, 6}, 18);
+  std::erase_if(shell.triangles, [&](const Eigen::Vector3i& t) {
+    return shell.vertices[static_cast<std::size_t>(t[0])].z() > 14;
+  });
+  const std::vector<Part> parts = {make_part("skull", Role::skull, ball({12, 0, 12}, 14)),
+                                   make_part("mandible", Role::mandible, ball({-6, -9, -8}, 12)),
+                                   make_part("maxilla", Role::maxilla, shell),
+                                   make_part("face", Role::face, ball({0, 0, 0}, 35))};
+  SceneRenderer renderer(parts);
+  PictureSettings settings;
+  settings.width = settings.height = 300;
+  settings.smooth_edges = false;
+  settings.part_opacity = {{"skull", 0.5}, {"mandible", 0.5}, {"maxilla", 0.5}};
+  settings.skin_opacity = 0.4;
+  for (const bool transparent : {false, true}) {
+    settings.transparent = transparent;
+    settings.samples = 4;
+    const Image sampled = renderer.picture(front_camera(), settings);
+    settings.samples = 1;
+    const Image plain = renderer.picture(front_camera(), settings);
+    int unlike = 0;
+    for (int y = 0; y < 300; ++y)
+      for (int x = 0; x < 300; ++x) {
+        const auto a = pixel(plain, x, y), b = pixel(sampled, x, y);
+        unlike += std::max({std::abs(a.r - b.r), std::abs(a.g - b.g), std::abs(a.b - b.b),
+                            std::abs(a.a - b.a)}) > 4;
+      }
+    EXPECT_LT(unlike, 1500);  // along the outlines
   }
 }
 
