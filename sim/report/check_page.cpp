@@ -166,14 +166,11 @@ class ClearancePage {
       if (i >= page_.pictures.size() || page_.pictures[i].empty()) continue;
       if (drawn++ == 0) html_ += "<h2>Where it is closest</h2>\n";
       const auto& pair = check_.pairs[i];
-      html_.add(
-          "<figure><img src=\"{}\" alt=\"{} and {} coloured by distance\"><figcaption><strong>{} "
-          "and {}</strong>.",
-          escaped(page_.pictures[i]), escaped(pair.a), escaped(pair.b), escaped(pair.a),
-          escaped(pair.b));
+      html_.add("<figure><img src=\"{}\" alt=\"{} and {} coloured by distance\">",
+                escaped(page_.pictures[i]), escaped(pair.a), escaped(pair.b));
       if (const auto words = open_surface_text(pair); !words.empty())
-        html_.add(" {}", escaped(words));
-      html_ += "</figcaption></figure>\n";
+        html_.add("<figcaption>{}</figcaption>", escaped(words));
+      html_ += "</figure>\n";
     }
     if (drawn == 0) return;
     html_ +=

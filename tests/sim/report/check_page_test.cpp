@@ -159,6 +159,8 @@ TEST(CheckPage, SaysEachSentenceOnceAndNamesProgramDateAndSurfaces) {
                  fmt::format("{:.2f}", pair.min_distance_mm)));  // in the table, too
   EXPECT_EQ(count("Made by Condyle 1.2 on 2026-11-24 10:00 UTC."), 1);
   EXPECT_EQ(count("maxilla 0123, mandible 4567."), 1);
+  EXPECT_EQ(count("<img src=\"worst.png\""), 1);
+  EXPECT_EQ(count("<figcaption>"), 0);  // pictures contain their titles
   EXPECT_EQ(count("closest first"), 1);
   EXPECT_EQ(count("worst first"), 0);
   EXPECT_EQ(count("@media print"), 1);
