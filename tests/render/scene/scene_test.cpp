@@ -158,6 +158,18 @@ TEST_F(Scene, HalfOpaqueSkinShowsWhatLiesUnderItBetweenBothPictures) {
   EXPECT_LT(half, bone - 5);
 }
 
+/// Pixels that differ by more than 3 of 255 in a channel.
+int unlike_pixels(const Image& one, const Image& other) {
+  int count = 0;
+  for (int y = 0; y < one.height; ++y)
+    for (int x = 0; x < one.width; ++x) {
+      const auto a = pixel(one, x, y), b = pixel(other, x, y);
+      count += std::max({std::abs(a.r - b.r), std::abs(a.g - b.g), std::abs(a.b - b.b),
+                         std::abs(a.a - b.a)}) > 3;
+    }
+  return count;
+}
+
 TEST_F(Scene, TranslucentSkinOfOneSampleIsThatOfSeveral) {
   // Shaded deferred with one sample, forward with several. A mouth shows the inner side.
   TriMesh head = ball({0, 0, 0}, 35);
@@ -178,13 +190,7 @@ TEST_F(Scene, TranslucentSkinOfOneSampleIsThatOfSeveral) {
     const Image plain = renderer.picture(front_camera(), settings);
     settings.samples = 4;
     const Image sampled = renderer.picture(front_camera(), settings);
-    int unlike = 0;
-    for (int y = 0; y < 300; ++y)
-      for (int x = 0; x < 300; ++x) {
-        const auto a = pixel(plain, x, y), b = pixel(sampled, x, y);
-        unlike += std::max({std::abs(a.r - b.r), std::abs(a.g - b.g), std::abs(a.b - b.b)}) > 3;
-      }
-    EXPECT_LT(unlike, 1500);  // along the outlines
+    EXPECT_LT(unlike_pixels(plain, sampled), 1500);  // along the outlines
     settings.skin_opacity = 0;
     settings.samples = 1;
     EXPECT_TRUE(test::unlike(plain, renderer.picture(front_camera(), settings), 0.01));
@@ -212,14 +218,7 @@ TEST_F(Scene, SeveralTranslucentPartsOfOneSampleAreThoseOfSeveral) {
     const Image sampled = renderer.picture(front_camera(), settings);
     settings.samples = 1;
     const Image plain = renderer.picture(front_camera(), settings);
-    int unlike = 0;
-    for (int y = 0; y < 300; ++y)
-      for (int x = 0; x < 300; ++x) {
-        const auto a = pixel(plain, x, y), b = pixel(sampled, x, y);
-        unlike += std::max({std::abs(a.r - b.r), std::abs(a.g - b.g), std::abs(a.b - b.b),
-                            std::abs(a.a - b.a)}) > 4;
-      }
-    EXPECT_LT(unlike, 1500);  // along the outlines
+    EXPECT_LT(unlike_pixels(plain, sampled), 1500);  // along the outlines
   }
 }
 
