@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <vector>
 
 #include "render/scene/passes.h"
@@ -34,6 +35,27 @@ float number_of(std::size_t item) { return static_cast<float>(item + 1) / 255; }
 
 }  // namespace
 
+void Passes::store(const DrawItem& item, int number, std::span<const Eigen::Vector3i> triangles,
+                   const PictureView& view) {
+  buffer_.number_surface(number);
+  GlProgram& program = kept_.of({.skin = item.role() == Role::face});
+  program.use();
+  place(program, item, view);
+  item.mesh().draw(triangles);
+  end_cut();
+}
+
+void Passes::light_stored(const DrawItem& item, int number, float alpha, const DrawnBox& box,
+                          const PictureView& view) {
+  GlProgram& program = begin(item.role() == Role::face ? skins_ : surfaces_, item, view, true);
+  see_stored(program);
+  program.set("opacity", alpha);
+  view.set_rays_in(program);
+  glBindVertexArray(no_attributes_);
+  buffer_.light(number, box);
+  end_cut();
+}
+
 void Passes::deferred(std::span<const DrawItem> items, const PictureView& view) {
   GLint target = 0;
   glGetIntegerv(GL_DRAW_FRAMEBUFFER_BINDING, &target);
@@ -44,27 +66,15 @@ void Passes::deferred(std::span<const DrawItem> items, const PictureView& view) 
   for (std::size_t i = 0; i < items.size(); ++i) {
     const auto& chosen = seen_of(items[i], view);
     seen[i] = !chosen.empty();
-    if (!seen[i]) continue;
-    buffer_.number_surface(static_cast<int>(i) + 1);
-    GlProgram& program = kept_.of({.skin = items[i].role() == Role::face});
-    program.use();
-    place(program, items[i], view);
-    items[i].mesh().draw(chosen);
-    end_cut();
+    if (seen[i]) store(items[i], static_cast<int>(i) + 1, chosen, view);
   }
   glFlush();
 
   buffer_.begin_light();
   for (std::size_t i = 0; i < items.size(); ++i) {
     const DrawnBox box = whole_tiles(box_of(items[i], view), view).both(around);
-    if (!seen[i] || box.empty()) continue;
-    GlProgram& program =
-        begin(items[i].role() == Role::face ? skins_ : surfaces_, items[i], view, true);
-    see_stored(program);
-    program.set("opacity", number_of(i));
-    view.set_rays_in(program);
-    glBindVertexArray(no_attributes_);
-    buffer_.light(static_cast<int>(i) + 1, box);
+    if (seen[i] && !box.empty())
+      light_stored(items[i], static_cast<int>(i) + 1, number_of(i), box, view);
   }
   buffer_.end();
 
@@ -163,12 +173,7 @@ void Passes::deferred_front(const DrawItem& item, const PictureView& view) {
   if (chosen.empty() || around.empty()) return;
   buffer_.fit(view.width, view.height);
   buffer_.begin_surfaces(around);
-  buffer_.number_surface(1);
-  GlProgram& keep = kept_.of({.skin = item.role() == Role::face});
-  keep.use();
-  place(keep, item, view);
-  item.mesh().draw(chosen);
-  end_cut();
+  store(item, 1, chosen, view);
   if (item.role() == Role::face && !item.drawable->closed) {
     // Where its inner side is nearer, the front is hidden.
     buffer_.number_surface(0);
@@ -178,13 +183,8 @@ void Passes::deferred_front(const DrawItem& item, const PictureView& view) {
 
   buffer_.begin_light();
   buffer_.clear_light(around);
-  GlProgram& program = begin(item.role() == Role::face ? skins_ : surfaces_, item, view, true);
-  see_stored(program);
-  view.set_rays_in(program);
-  glBindVertexArray(no_attributes_);
-  buffer_.light(1, around);
+  light_stored(item, 1, static_cast<float>(item.opacity), around, view);
   buffer_.end();
-  end_cut();
 
   glBindFramebuffer(GL_FRAMEBUFFER, static_cast<GLuint>(target));
   const DrawnBox box = around.both(view.box);

@@ -375,21 +375,24 @@ void Passes::translucent(std::span<const DrawItem> items, const PictureView& vie
   });
   // Colours are premultiplied when they are blended, so that an empty background stays exact.
   glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-  for (const auto& item : order) {
-    const bool stored = view.one_sample && can_store(item, view);
-    const bool face = item.role() == Role::face;
-    if (face) cover_by({&item, 1}, view);  // drawn last; it hides most of its inner side
-    if (stored) deferred_front(item, view);
-    if (stored && (!face || item.drawable->closed)) continue;
-    depth_only(item, view, stored ? Sides::back : sides_of(item));
+  const auto front_layer = [&](const DrawItem& item, Sides sides, const auto& shaded) {
+    depth_only(item, view, sides);
     glDepthFunc(GL_EQUAL);
     glEnable(GL_BLEND);
-    if (stored)
-      shade_interior(item, view);
-    else
-      shade(item, view);
+    shaded();
     glDisable(GL_BLEND);
     glDepthFunc(GL_LESS);
+  };
+  for (const auto& item : order) {
+    const bool face = item.role() == Role::face;
+    if (face) cover_by({&item, 1}, view);  // drawn last; it hides most of its inner side
+    if (!view.one_sample || !can_store(item, view)) {
+      front_layer(item, sides_of(item), [&] { shade(item, view); });
+      continue;
+    }
+    deferred_front(item, view);
+    if (face && !item.drawable->closed)
+      front_layer(item, Sides::back, [&] { shade_interior(item, view); });
   }
 }
 

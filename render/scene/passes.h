@@ -136,6 +136,11 @@ class Passes {
   const std::vector<Eigen::Vector3i>& seen_of(const DrawItem& item, const PictureView& view);
   void shade(const DrawItem& item, const PictureView& view);
   void shade_interior(const DrawItem& item, const PictureView& view);
+  /// Draws a surface into the buffer; lights its pixels there.
+  void store(const DrawItem& item, int number, std::span<const Eigen::Vector3i> triangles,
+             const PictureView& view);
+  void light_stored(const DrawItem& item, int number, float alpha, const DrawnBox& box,
+                    const PictureView& view);
   /// Deferred shading of all of these, each visible pixel lit once.
   void deferred(std::span<const DrawItem> items, const PictureView& view);
   /// Deferred shading of the front of a translucent item: blends it into a picture of one sample.
