@@ -18,8 +18,8 @@ constexpr float thickest_mm = 15;
 constexpr float share_of_clearance = 0.4f;
 constexpr float adult_shade_per_mm = 0.04f, darkest_shade = 0.25f;
 // Of the hollow, from the corner of the mouth: backward along the skin, and upward.
-constexpr float hollow_front_mm = 6, deep_from_mm = 22, deep_to_mm = 28, masseter_mm = 46;
-constexpr float hollow_height_mm = 4, hollow_half_height_mm = 17;
+constexpr float hollow_front_mm = 6, deep_from_mm = 30, deep_to_mm = 31, masseter_mm = 52;
+constexpr float hollow_height_mm = 4, half_height_above_mm = 26, half_height_below_mm = 17;
 
 /// A vertex of a cheek in the directions of its hollow.
 struct CheekPoint {
@@ -30,7 +30,8 @@ struct CheekPoint {
 float hollow_weight(const CheekPoint& p) {
   const double along = smooth_step((p.back - hollow_front_mm) / (deep_from_mm - hollow_front_mm)) *
                        smooth_step((masseter_mm - p.back) / (masseter_mm - deep_to_mm));
-  const float up = (p.up - hollow_height_mm) / hollow_half_height_mm;
+  const float above = p.up - hollow_height_mm;
+  const float up = above / (above > 0 ? half_height_above_mm : half_height_below_mm);
   return static_cast<float>(along) * std::exp(-up * up);
 }
 
