@@ -52,6 +52,15 @@ Eigen::Vector3f mottled(const Eigen::Vector3f& color, const Eigen::Vector3f& p) 
                                             1 - 0.026f * blood + 0.018f * grain));
 }
 
+/// Box that contains the red of the lips: the ellipsoid inscribed in it does.
+Eigen::AlignedBox3f lips_about(std::span<const int> rim, std::span<const Eigen::Vector3f> places) {
+  Eigen::AlignedBox3f box;
+  for (const int v : rim) box.extend(places[static_cast<std::size_t>(v)]);
+  const float width = box.sizes().x();
+  const Eigen::Vector3f middle = box.center(), half = width * Eigen::Vector3f(0.62f, 0.62f, 0.42f);
+  return {middle - half, middle + half};
+}
+
 /// Mean colour of a face's skin about the lashes, sRGB; none without.
 std::optional<Eigen::Vector3f> skin_about(const TriMesh& eyes, std::span<const float> lash_radius,
                                           const TriMesh* face) {
@@ -159,6 +168,7 @@ std::vector<Drawable> make_drawables(std::span<const Part* const> parts, const M
       drawables.back().behind_lashes =
           skin_about(part.mesh, lash_radius, face == parts.end() ? nullptr : &(*face)->mesh);
     if (!mouth_rim.empty()) {
+      drawables.back().lips = lips_about(mouth_rim, positions);
       drawables.back().neck_cut = find_neck_cut(positions, drawables.back().triangles(), mouth_rim);
       drawables.back().folds = std::make_shared<const SkinFolds>(
           positions, normals, drawables.back().triangles(), mouth_rim);
@@ -194,6 +204,7 @@ std::vector<Drawable> drawables_like(std::span<const Drawable> others) {
     drawables.back().folds = other.folds;
     drawables.back().hollows = other.hollows;
     drawables.back().pad = other.pad;
+    drawables.back().lips = other.lips;
     drawables.back().neck_cut = other.neck_cut;
   }
   return drawables;

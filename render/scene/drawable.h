@@ -47,6 +47,7 @@ struct Drawable {
   std::shared_ptr<const SkinFolds> folds = {};  // of a face only
   std::shared_ptr<const CheekHollows> hollows = {};
   std::shared_ptr<const SubmentalPad> pad = {};
+  Eigen::AlignedBox3f lips = {};       // about the mouth of a face, at rest; empty without one
   std::optional<float> neck_cut = {};  // height of a face's lower end, where it is closed, mm
 
   const GpuMesh& shown() const { return mapped && finer ? *finer : mesh; }

@@ -258,6 +258,11 @@ GlProgram& Passes::begin(Programs& programs, const DrawItem& item, const Picture
   program.set("wrap", material.wrap);
   program.set("scatter", material.scatter);
   program.set("coat", material.coat);
+  const Eigen::AlignedBox3f& lips = item.drawable->lips;
+  constexpr float nowhere_mm = 1e-3f;
+  program.set("mouth_middle", lips.isEmpty() ? Eigen::Vector3f::Zero().eval() : lips.center());
+  program.set("mouth_half", lips.isEmpty() ? Eigen::Vector3f::Constant(nowhere_mm).eval()
+                                           : (0.5f * lips.sizes()).eval());
   program.set("open_mouth", view.sectioned ? 1.f : 1 - view.at_rest);
   if (vanishing) {
     constexpr float gone_mm = 12, over_mm = 38;  // above the cut

@@ -118,6 +118,9 @@ std::string shading_constants(const Shading& shading) {
   number("coarse_period", coarse);
   number("rest_period", fine * coarse);
   number("detail_side", SkinDetail::side);
+  // Size of a cell of skin over that of a lip's furrow, which repeats after the same product.
+  const auto ratio = [](int cells) { return std::to_string(static_cast<double>(cells) / coarse); };
+  text += "const vec3 lip_cells = vec3(" + ratio(60) + ", " + ratio(20) + ", " + ratio(13) + ");\n";
   return text;
 }
 

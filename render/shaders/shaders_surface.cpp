@@ -243,12 +243,23 @@ uniform sampler3D skin_detail;  // slope of a rough surface, and its height
 uniform float open_mouth;  // 0 at rest, 1 with the jaw far open
 uniform float pixel_size;       // of a pixel at distance 1
 
+// Offset of the position at rest from another one; stored positions are known up to the period.
+vec3 from_rest(vec3 other) {
+  return mod(rest_place - other + 0.5 * rest_period, rest_period) - 0.5 * rest_period;
+}
+
 // Fraction of the skin that remains visible towards the cut of the neck.
 uniform vec2 neck_end;  // height at rest where it has vanished, mm; 1 / mm over which it does
 float visible() {
-  // Stored places are known up to the period.
-  float above = mod(rest_place.z - neck_end.x + 0.5 * rest_period, rest_period) - 0.5 * rest_period;
-  return vanishing ? smoothstep(0.0, 1.0, above * neck_end.y) : 1.0;
+  return vanishing ? smoothstep(0.0, 1.0, from_rest(vec3(0.0, 0.0, neck_end.x)).z * neck_end.y)
+                   : 1.0;
+}
+
+// On the red of the lips the cells of skin are long, from lip to lip: furrows.
+uniform vec3 mouth_middle, mouth_half;  // box about the lips at rest, mm
+bool beside_mouth() {
+  vec3 off = from_rest(mouth_middle) / mouth_half;
+  return dot(off, off) < 1.0;
 }
 
 // The field at a position, at the level of detail of a pixel's size on the surface.
@@ -268,9 +279,13 @@ void main() {
   // Pores and fine creases, and the unevenness under them. Subsurface scattering smooths them: they
   // affect the specular more than the diffuse part.
   float pixel_mm = pixel_size * length(to_eye) / max(dot(smooth_normal, v), 0.05);
-  vec4 fine = detail(rest_place, fine_period, pixel_mm);
+  bool furrowed = gloss > 0.15 && beside_mouth();
+  vec3 cells = furrowed ? lip_cells : vec3(1.0);
   vec4 coarse = detail(rest_place.zxy, coarse_period, pixel_mm);
-  vec3 slope = (0.27 * fine.xyz + 0.12 * coarse.xyz) * (1.0 - 0.5 * gloss);
+  vec3 bent = vec3(furrowed ? 1.2 * coarse.x : 0.0, 0.0, 0.0);
+  vec4 fine = detail(rest_place * cells + bent, fine_period, pixel_mm);
+  vec3 slope = (furrowed ? 1.5 * gloss : 0.27 - 0.135 * gloss) * fine.xyz * cells
+             + (0.12 - 0.06 * gloss) * coarse.xyz;
   vec3 n = normalize(smooth_normal - (slope - smooth_normal * dot(slope, smooth_normal)));
   vec3 shine_normal = normalize(mix(smooth_normal, n, 1.6));
   float nv = clamp(dot(n, v), 0.0, 1.0);
@@ -288,7 +303,7 @@ void main() {
   float fn = dot(n, fill_direction), rn = dot(n, rim_direction);
   vec3 fill = max(vec3(fn) + bleed, 0.0) / ((1.0 + bleed) * (1.0 + bleed));
   vec3 rim = max(vec3(rn) + 0.5 * bleed, 0.0) / ((1.0 + 0.5 * bleed) * (1.0 + 0.5 * bleed));
-  float pore = clamp(1.0 + 0.55 * fine.a + 0.35 * coarse.a, 0.6, 1.4);
+  float pore = clamp(1.0 + (furrowed ? 0.8 : 0.55) * fine.a + 0.35 * coarse.a, 0.6, 1.4);
   vec3 light = key_color * through * tinted + (fill_color * fill + rim_color * rim) * occlusion
              + ambient_light(n, v) * occlusion;
   float open = ao * ao;
@@ -298,7 +313,8 @@ void main() {
              + open * (fill_color * specular(shine_normal, v, fill_direction, wide)
                      + rim_color * specular(shine_normal, v, rim_direction, wide));
   shine *= mix(pore * pore, 1.0, gloss);
-  vec3 c = albedo * mix(vec3(1.0), vec3(pore), vec3(0.05, 0.10, 0.12)) * light
+  vec3 darker = furrowed ? vec3(0.35, 0.60, 0.60) : vec3(0.05, 0.10, 0.12);
+  vec3 c = albedo * mix(vec3(1.0), vec3(pore), darker) * light
          + mix(0.028, 0.05, gloss) * shine;
   c += 0.5 * ambient_light(reflect(-v, n), v) * fresnel(nv, 0.028) * (1.0 - wide) * open;
   vec3 shown = display(c);

@@ -6,6 +6,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "engine/core/error.h"
@@ -55,6 +56,19 @@ inline Blob blob_of(const Image& image) {
     blob.variance = square / blob.area - blob.centre.cwiseProduct(blob.centre);
   }
   return blob;
+}
+
+/// Roughness of the middle of a picture across and along, from second differences of its green.
+inline std::pair<double, double> roughness(const Image& image) {
+  constexpr int step = 3;
+  double across = 0, along = 0;
+  for (int y = image.height / 4; y < 3 * image.height / 4; ++y)
+    for (int x = image.width / 4; x < 3 * image.width / 4; ++x) {
+      const auto green = [&](int dx, int dy) { return double(pixel(image, x + dx, y + dy).g); };
+      across += std::pow(green(-step, 0) - 2 * green(0, 0) + green(step, 0), 2);
+      along += std::pow(green(0, -step) - 2 * green(0, 0) + green(0, step), 2);
+    }
+  return {across, along};
 }
 
 }  // namespace condyle

@@ -155,19 +155,6 @@ TEST(LidsNote, SaysWhyTheLidsOfAPatientDoNotClose) {
             "expressions do not close the right lids: no right eyeball was found");
 }
 
-/// Roughness of the middle of a picture across and along, from second differences of its green.
-std::pair<double, double> roughness(const Image& image) {
-  constexpr int step = 3;
-  double across = 0, along = 0;
-  for (int y = image.height / 4; y < 3 * image.height / 4; ++y)
-    for (int x = image.width / 4; x < 3 * image.width / 4; ++x) {
-      const auto green = [&](int dx, int dy) { return double(pixel(image, x + dx, y + dy).g); };
-      across += std::pow(green(-step, 0) - 2 * green(0, 0) + green(step, 0), 2);
-      along += std::pow(green(0, -step) - 2 * green(0, 0) + green(0, step), 2);
-    }
-  return {across, along};
-}
-
 TEST_F(LifePictures, TheReliefOfAClosedLidsSkinIsNotDrawnOutToStreaks) {
   const std::vector<Part> parts = eye_and_lids(240);
   SceneRenderer renderer(parts);

@@ -1,0 +1,47 @@
+// The relief of the lips' red is furrows from lip to lip; that of the skin beside them is not.
+#include <algorithm>
+#include <cmath>
+
+#include "tests/render/face/opened_patient.h"
+#include "tests/render/scene_fixture.h"
+
+namespace condyle {
+namespace {
+
+using LipPictures = WithContext;
+
+/// The built-in patient, its lips seen from close by.
+struct LipFace {
+  const OpenedPatient& p = opened_patient();
+  SceneRenderer renderer{p.scene.patient.parts};
+
+  /// Roughness across the face over that along it, so high above the lower end of the rim.
+  double ratio(double above_mm) {
+    double low = 1e9, front = 1e9;
+    for (const int v : p.prepared.lining()->rim)
+      low = std::min<double>(low, p.rest[static_cast<std::size_t>(v)].z());
+    for (const auto& v : p.rest)
+      if (std::abs(v.x()) < 5 && std::abs(v.z() - low - above_mm) < 1)
+        front = std::min<double>(front, v.y());
+    Camera camera = front_camera(10);
+    camera.target = {0, front, low + above_mm};
+    auto settings = mask_settings(100);
+    settings.shadows = false;
+    const auto [across, along] = roughness(renderer.picture(camera, settings));
+    EXPECT_GT(along, 100);
+    return across / along;
+  }
+};
+
+TEST_F(LipPictures, FurrowsOfTheRedRunFromLipToLip) {
+  LipFace face;
+  const double lip = face.ratio(-1), chin = face.ratio(-16);
+  RecordProperty("lip", std::to_string(lip));
+  RecordProperty("chin", std::to_string(chin));
+  EXPECT_GT(lip, 3);
+  EXPECT_LT(chin, 1.5);
+  EXPECT_GT(chin, 0.5);
+}
+
+}  // namespace
+}  // namespace condyle
