@@ -52,6 +52,19 @@ Eigen::Vector3f mottled(const Eigen::Vector3f& color, const Eigen::Vector3f& p) 
                                             1 - 0.026f * blood + 0.018f * grain));
 }
 
+/// Sends the places that the fine relief of a surface is tied to. The back of a tongue is unrolled
+/// from its root over its tip: distance from its middle, and y + z.
+void send_rest_of(Role role, std::span<const Eigen::Vector3f> places, GpuMesh& mesh) {
+  if (role == Role::face) mesh.send_rest(places);
+  if (role != Role::tongue) return;
+  Eigen::AlignedBox3f box;
+  for (const auto& p : places) box.extend(p);
+  std::vector<Eigen::Vector3f> back;
+  back.reserve(places.size());
+  for (const auto& p : places) back.emplace_back(p.x() - box.center().x(), p.y() + p.z(), 0);
+  mesh.send_rest(back);
+}
+
 /// Box that contains the red of the lips: the ellipsoid inscribed in it does.
 Eigen::AlignedBox3f lips_about(std::span<const int> rim, std::span<const Eigen::Vector3f> places) {
   Eigen::AlignedBox3f box;
@@ -151,7 +164,7 @@ std::vector<Drawable> make_drawables(std::span<const Part* const> parts, const M
     mesh.send_shape(positions, normals);
     mesh.send_colors(colors);
     mesh.send_extras(extras);
-    if (part.role == Role::face) mesh.send_rest(positions);
+    send_rest_of(part.role, positions, mesh);
     std::vector<Crease> creases;
     if (part.role == Role::face) creases = find_creases(positions, normals, occlusion[p].together);
     std::optional<SurfaceEdges> edges, coarse_edges;
@@ -194,7 +207,7 @@ std::vector<Drawable> drawables_like(std::span<const Drawable> others) {
     mesh.send_shape(positions, normals);
     mesh.send_colors(other.colors);
     mesh.send_extras(other.extras);
-    if (part.role == Role::face) mesh.send_rest(positions);
+    send_rest_of(part.role, positions, mesh);
     drawables.push_back({&part, other.material, other.closed, other.box, std::move(mesh),
                          other.creases, other.colors, other.extras, other.edges,
                          other.coarse_edges});

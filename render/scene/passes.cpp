@@ -219,7 +219,8 @@ GlProgram& Passes::begin(Programs& programs, const DrawItem& item, const Picture
     glActiveTexture(GL_TEXTURE2);
     glBindTexture(GL_TEXTURE_2D, colour_table_);
   }
-  if (role == Role::face) {
+  const bool papillae = role == Role::tongue && !mapped && !view.coarse;
+  if (role == Role::face || papillae) {
     glActiveTexture(GL_TEXTURE3);
     glBindTexture(GL_TEXTURE_3D, skin_detail_);
   }
@@ -240,6 +241,7 @@ GlProgram& Passes::begin(Programs& programs, const DrawItem& item, const Picture
                                     .seen_through = !item.opaque(),
                                     .skin = role == Role::face,
                                     .smooth_skin = role == Role::face && (view.coarse || glass),
+                                    .papillae = papillae,
                                     .vanishing = vanishing,
                                     .deferred = deferred});
   program.use();

@@ -42,7 +42,7 @@ layout(location = 2) in vec4 color;  // sRGB, occlusion with everything at rest
 // occlusion by its own body, curvature, gloss, fraction of lip; of eyes: radius of a lash
 layout(location = 3) in vec4 extra;
 layout(location = 4) in float value;  // value of a colour map
-layout(location = 5) in vec3 rest;  // position at rest; of skin
+layout(location = 5) in vec3 rest;  // position at rest, of skin; of a tongue: on its back
 uniform mat4 model;            // rigid
 uniform mat4 view_projection;
 uniform mat4 shadow_matrix;
@@ -108,6 +108,7 @@ std::string shading_constants(const Shading& shading) {
   fixed("seen_through", shading.seen_through);
   fixed("skin", shading.skin);
   fixed("smooth_skin", shading.smooth_skin);
+  fixed("papillae", shading.papillae);
   fixed("vanishing", shading.vanishing);
   const auto number = [&](const char* name, int value) {
     text += std::string("const float ") + name + " = " + std::to_string(value) + ".0;\n";

@@ -56,8 +56,8 @@ namespace {
 
 // Four 32-bit values per pixel: the normal, in octahedral encoding; colour (square roots) and
 // occlusion; two of the rest position; the third, curvature and gloss. For all surfaces but skin
-// the third is the depth in the mouth, and there is no position. source: Meyer and others, On
-// Floating-Point Normal Vectors, 2010 (octahedron)
+// the third is the depth in the mouth; of those only tongues have the first two. source: Meyer and
+// others, On Floating-Point Normal Vectors, 2010 (octahedron)
 const char* const keep_source = R"(
 in vec3 world_normal;
 in vec3 albedo;
@@ -78,7 +78,8 @@ void main() {
   vec3 n = gl_FrontFacing ? world_normal : -world_normal;
   n /= abs(n.x) + abs(n.y) + abs(n.z);
   vec2 folded = (1.0 - abs(n.yx)) * vec2(n.x < 0.0 ? -1.0 : 1.0, n.y < 0.0 ? -1.0 : 1.0);
-  vec3 place = skin ? fract(rest_place * (1.0 / rest_period)) : vec3(0.0, 0.0, traits.w);
+  vec3 place = fract(rest_place * (1.0 / rest_period));
+  if (!skin) place.z = traits.w;
   uint low = uint(clamp(place.z, 0.0, 1.0) * 65535.0 + 0.5);
   words = uvec4(pair(0.5 + 0.5 * (n.z < 0.0 ? folded : n.xy)),
                 four(vec4(sqrt(albedo), traits.x)), pair(place.xy),

@@ -119,6 +119,18 @@ float specular(vec3 n, vec3 v, vec3 l, float rough) {
   return a2 / (d * d * max(0.1, lh * lh) * (4.0 * rough * rough + 2.0)) * max(dot(n, l), 0.0);
 }
 
+uniform sampler3D skin_detail;  // slope of a rough surface, and its height
+uniform float pixel_size;       // of a pixel at distance 1
+
+// Size of a pixel on a surface with this normal, mm.
+float pixel_on(vec3 n, vec3 v) { return pixel_size * length(to_eye) / max(dot(n, v), 0.05); }
+
+// The field at a position, at that level of detail.
+vec4 detail(vec3 place, float period, float pixel_mm) {
+  float level = log2(pixel_mm * float(detail_side) / period);
+  return textureLod(skin_detail, place * (1.0 / period), max(level, 0.0)) - 0.5;
+}
+
 float fresnel(float nv, float f0) {
   float m = 1.0 - nv;
   float m2 = m * m;
@@ -174,6 +186,22 @@ vec3 map_color() {
   return c;
 }
 
+// Papillae of a tongue; along its middle a furrow, beside that the coating.
+void roughen(vec3 v, inout vec3 n, inout vec3 base, inout float wet) {
+  float pixel_mm = pixel_on(n, v);
+  vec4 fine = detail(vec3(rest_place.xy, 0.0), fine_period, pixel_mm);
+  vec4 coarse = detail(vec3(rest_place.yx, 0.0), coarse_period, pixel_mm);
+  float aside = mod(rest_place.x + 0.5 * rest_period, rest_period) - 0.5 * rest_period
+              + 3.0 * coarse.b;
+  float furrow = exp(-aside * aside / 2.2), coating = exp(-aside * aside / 90.0);
+  vec3 slope = 1.3 * fine.xyz + 0.5 * coarse.yxz + vec3(0.3 * aside * furrow, 0.0, 0.0);
+  n = normalize(n - (slope - n * dot(slope, n)));
+  base *= 1.0 + vec3(0.25, 0.7, 0.7) * (0.6 * fine.a + 0.4 * coarse.a);
+  base = mix(base, vec3(0.62, 0.44, 0.40), 0.3 * coating * (1.0 + coarse.a));
+  base *= 1.0 - 0.25 * furrow;
+  wet *= clamp(0.4 + 1.2 * fine.a, 0.0, 1.0);
+}
+
 void main() {
   begin();
   vec3 v = normalize(to_eye);
@@ -184,6 +212,9 @@ void main() {
   }
   // An open surface is lit from its visible side.
   if (!gl_FrontFacing) n = -n;
+  vec3 base = albedo;
+  float wet = 1.0 - traits.y;
+  if (papillae) roughen(v, n, base, wet);
   float nv = clamp(dot(n, v), 0.0, 1.0);
   // Fraction of the pixel covered by the map; 1 where all values are shown.
   float covered = mapped
@@ -206,7 +237,7 @@ void main() {
   float grazed = smoothstep(-0.05, 0.3, kn);
   float lit = mix(1.0, key_visibility(n, grazed > 0.0).x, grazed) * depth;
   vec3 soft = vec3(wrapped(kn, wrap)) + scatter * (wrapped(kn, wrap + 0.45) - wrapped(kn, wrap));
-  vec3 occlusion = colored_occlusion(ao * sqrt(ao), albedo);
+  vec3 occlusion = colored_occlusion(ao * sqrt(ao), base);
   // In the mouth most light is reflected by its red walls.
   if (cavity.y > 0.0) occlusion *= mix(vec3(1.15, 0.80, 0.70), vec3(1.04, 0.95, 0.90), depth);
   vec3 light = key_color * soft * lit * mix(0.55 + 0.45 * ao, 1.0, ao)
@@ -219,7 +250,7 @@ void main() {
   vec3 shine = key_color * specular(n, v, key_direction, roughness) * lit
              + fill_color * specular(n, v, fill_direction, roughness) * open
              + rim_color * specular(n, v, rim_direction, roughness) * open;
-  vec3 c = albedo * light + reflectance * shine;
+  vec3 c = base * light + reflectance * shine;
   vec3 mirrored = reflect(-v, n);
   // In the mouth grazing reflections point into the dark.
   float around = cavity.y > 0.0 ? open * smoothstep(-1.0, 0.4, dot(mirrored, v)) : open;
@@ -229,7 +260,7 @@ void main() {
     // as a window: on the iris from the front and from either side.
     bool eye = coat > 0.9;
     vec3 mirrored_key = eye ? normalize(key_direction - 0.35 * sky_direction) : key_direction;
-    c += coat * (1.0 - traits.y) * reflectance * (key_color * specular(n, v, mirrored_key, 0.16) * (eye ? sqrt(lit) : lit)
+    c += coat * wet * reflectance * (key_color * specular(n, v, mirrored_key, 0.16) * (eye ? sqrt(lit) : lit)
        + fill_color * (eye ? 3.0 : 1.0) * specular(n, v, fill_direction, 0.2) * open);
   }
   float a = seen_through ? 1.0 - pow(1.0 - opacity, 1.0 / max(nv, 0.35)) : opacity;
@@ -239,9 +270,7 @@ void main() {
 
 const char* const skin_source = R"(
 uniform sampler2D skin_table;   // diffuse light by cosine and curvature
-uniform sampler3D skin_detail;  // slope of a rough surface, and its height
 uniform float open_mouth;  // 0 at rest, 1 with the jaw far open
-uniform float pixel_size;       // of a pixel at distance 1
 
 // Offset of the position at rest from another one; stored positions are known up to the period.
 vec3 from_rest(vec3 other) {
@@ -262,13 +291,6 @@ bool beside_mouth() {
   return dot(off, off) < 1.0;
 }
 
-// The field at a position, at the level of detail of a pixel's size on the surface.
-vec4 detail(vec3 place, float period, float pixel_mm) {
-  if (smooth_skin) return vec4(0.0);
-  float level = log2(pixel_mm * float(detail_side) / period);
-  return textureLod(skin_detail, place * (1.0 / period), max(level, 0.0)) - 0.5;
-}
-
 void main() {
   begin();
   vec3 v = normalize(to_eye);
@@ -278,12 +300,12 @@ void main() {
   float ao = max(traits.x, 0.42 * gloss * open_mouth);
   // Pores and fine creases, and the unevenness under them. Subsurface scattering smooths them: they
   // affect the specular more than the diffuse part.
-  float pixel_mm = pixel_size * length(to_eye) / max(dot(smooth_normal, v), 0.05);
+  float pixel_mm = pixel_on(smooth_normal, v);
   bool furrowed = gloss > 0.15 && beside_mouth();
   vec3 cells = furrowed ? lip_cells : vec3(1.0);
-  vec4 coarse = detail(rest_place.zxy, coarse_period, pixel_mm);
+  vec4 coarse = smooth_skin ? vec4(0.0) : detail(rest_place.zxy, coarse_period, pixel_mm);
   vec3 bent = vec3(furrowed ? 1.2 * coarse.x : 0.0, 0.0, 0.0);
-  vec4 fine = detail(rest_place * cells + bent, fine_period, pixel_mm);
+  vec4 fine = smooth_skin ? vec4(0.0) : detail(rest_place * cells + bent, fine_period, pixel_mm);
   vec3 slope = (furrowed ? 1.5 * gloss : 0.27 - 0.135 * gloss) * fine.xyz * cells
              + (0.12 - 0.06 * gloss) * coarse.xyz;
   vec3 n = normalize(smooth_normal - (slope - smooth_normal * dot(slope, smooth_normal)));
