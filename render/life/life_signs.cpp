@@ -70,7 +70,7 @@ Life life_about(const Eigen::Vector3d& condyles, const std::optional<Eigen::Vect
 }
 
 LifeSigns life_signs(double time_s, const Pose& X_CM) {
-  constexpr double extension_fraction = 0.1;
+  constexpr double extension_fraction = 0.07;
   const Eigen::AngleAxisd turn(X_CM.R);
   const Eigen::Vector2d look = gaze(time_s);
   const double turns = 2 * std::numbers::pi * time_s;

@@ -83,14 +83,23 @@ TEST(LifeSigns, BreathsAreTwelveToFifteenAMinute) {
   EXPECT_LE(breaths, 10 * 15);
 }
 
-TEST(LifeSigns, TheHeadExtendsByATenthOfTheJawsOpeningAndByNothingElse) {
+TEST(LifeSigns, TheHeadExtendsInProportionToTheJawsOpeningAndByNothingElse) {
   const auto turned = [](double deg, const Eigen::Vector3d& axis) {
     return Pose{Eigen::Quaterniond(Eigen::AngleAxisd(deg * rad_per_deg, axis)), {0, 8, -5}};
   };
   const Eigen::Vector3d left = Eigen::Vector3d::UnitX();
-  EXPECT_NEAR(life_signs(3, turned(30, left)).extension, 3 * rad_per_deg, 1e-12);
+  EXPECT_NEAR(life_signs(3, turned(30, left)).extension, 2.1 * rad_per_deg, 1e-12);
   EXPECT_EQ(life_signs(3, turned(-5, left)).extension, 0);
   EXPECT_NEAR(life_signs(3, turned(5, Eigen::Vector3d::UnitZ())).extension, 0, 1e-12);
+  // Path of the upper incisors over that of the lower ones, of an adult jaw whose condyles slide.
+  const Eigen::Vector3d condyles(0, -13, -7), slid = condyles + Eigen::Vector3d(0, -15, -7);
+  const Eigen::Quaterniond turn = turned(35, left).R;
+  const Pose opened{turn, slid - turn * condyles};
+  const Eigen::Vector3d upper(0, -90, -52), lower(0, -88, -53);
+  const Pose still = still_in_cranium(life_about(condyles, {}), life_signs(3, opened).extension);
+  const double ratio = (still * upper - upper).norm() / (opened * lower - lower).norm();
+  EXPECT_GT(ratio, 0.07);
+  EXPECT_LT(ratio, 0.09);
   // An open jaw's chin is lower.
   EXPECT_LT((turned(30, left) * Eigen::Vector3d(0, -80, -40)).z(), -45);
 }
