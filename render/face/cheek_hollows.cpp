@@ -21,10 +21,14 @@ constexpr float adult_shade_per_mm = 0.04f, darkest_shade = 0.25f;
 constexpr float hollow_front_mm = 6, deep_from_mm = 30, deep_to_mm = 31, masseter_mm = 52;
 constexpr float hollow_height_mm = 4, half_height_above_mm = 26, half_height_below_mm = 17;
 
+constexpr float least_cosine = 0.3f;  // of skin that sinks in, not the lining
+constexpr float farthest_mm = 70;     // above or below its height
+
 /// A vertex of a cheek in the directions of its hollow.
 struct CheekPoint {
   int vertex;
   float back, up;  // from the corner of the mouth, over the unit of length
+  float facing;    // 0 to 1: to the side and forward
 };
 
 float hollow_weight(const CheekPoint& p) {
@@ -32,7 +36,7 @@ float hollow_weight(const CheekPoint& p) {
                        smooth_step((masseter_mm - p.back) / (masseter_mm - deep_to_mm));
   const float above = p.up - hollow_height_mm;
   const float up = above / (above > 0 ? half_height_above_mm : half_height_below_mm);
-  return static_cast<float>(along) * std::exp(-up * up);
+  return p.facing * static_cast<float>(along) * std::exp(-up * up);
 }
 
 /// Jaws and teeth within a box.
@@ -63,12 +67,13 @@ std::vector<CheekPoint> cheek_points(std::span<const Vector3f> rest,
   std::vector<CheekPoint> points;
   for (std::size_t v = 0; v < rest.size(); ++v) {
     const Vector3f off = (rest[v] - corner) / unit;
-    const float out = side * off.x();
-    if (out < 0 || off.y() < -10 || std::abs(off.z() - hollow_height_mm) > 45 ||
-        normals[v].dot(Vector3f(0.7f * side, -0.7f, 0)) < 0.3f)
+    const float out = side * off.x(), cosine = normals[v].dot(Vector3f(0.7f * side, -0.7f, 0));
+    if (out < 0 || off.y() < -10 || std::abs(off.z() - hollow_height_mm) > farthest_mm ||
+        cosine < least_cosine)
       continue;
     if (const float back = std::hypot(out, off.y()); back < masseter_mm)
-      points.push_back({static_cast<int>(v), back, off.z()});
+      points.push_back({static_cast<int>(v), back, off.z(),
+                        static_cast<float>(smooth_step((cosine - least_cosine) / 0.3))});
   }
   return points;
 }

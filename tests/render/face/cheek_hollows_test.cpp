@@ -74,6 +74,23 @@ TEST(CheekHollowsTest, OpenedCheeksSinkInBesideTheCornersAndDeeperWithTheOpening
   EXPECT_LT(before, 5);
 }
 
+TEST(CheekHollowsTest, HollowsEndWithoutAStep) {
+  const auto smooth = opened_patient().drawn(opened_patient().frame("open 40"));
+  auto sunken = smooth;
+  hollows().apply(sunken);
+  float step = 0;  // over the distance of an undisplaced vertex and its neighbour
+  for (const auto& t : opened_patient().face->mesh.triangles)
+    for (int k = 0; k < 3; ++k) {
+      const auto a = static_cast<std::size_t>(t[k]), b = static_cast<std::size_t>(t[(k + 1) % 3]);
+      const float apart = (smooth[a] - smooth[b]).norm();
+      if (sunken[a] == smooth[a] && apart > 0.1f)
+        step = std::max(step, (sunken[b] - smooth[b]).norm() / apart);
+    }
+  RecordProperty("step", std::to_string(step));
+  EXPECT_GT(step, 0);
+  EXPECT_LT(step, 0.1f);
+}
+
 TEST(CheekHollowsTest, SunkenCheeksStayClearOfJawsAndTeeth) {
   const FrameState frame = opened_patient().frame("open 40");
   const auto smooth = opened_patient().drawn(frame);
