@@ -41,8 +41,9 @@ struct LifeSigns {
 /// saccades of up to 9 degrees; 13.5 breaths a minute; the head extends by 0.07 of the jaw's
 /// rotation, so that the upper incisors move by 8 % of the path of the lower ones.
 /// source: closing is faster than opening by 40 to 47 %: Sforza 2008; that the head extends as the
-/// jaw opens: Eriksson 2000, Zafar 2000; by 7 % in men and 9 % in women: Haeggman-Henrikson and
-/// others, Gender Difference in Motor Strategy in Response to Jaw-opening Resistance, 2018
+/// jaw opens: Eriksson 2000, Zafar 2000; ratio of the amplitudes of head and jaw, 7 % in men and
+/// 9 % in women: Haeggman-Henrikson and others, Gender Difference in Motor Strategy in Response to
+/// Jaw-opening Resistance, 2018. Here it is that of upper and lower incisors.
 LifeSigns life_signs(double time_s, const Pose& X_CM = {});
 
 /// Pose in the cranium's frame of what stays where it is while the head extends.
