@@ -6,6 +6,7 @@
 
 #include "engine/core/hash.h"
 #include "engine/core/user_cache.h"
+#include "engine/math/smooth_step.h"
 #include "engine/mesh/triangle_tree.h"
 #include "render/face/lashes.h"
 #include "render/face/neck_cut.h"
@@ -52,18 +53,32 @@ Eigen::Vector3f mottled(const Eigen::Vector3f& color, const Eigen::Vector3f& p) 
                                             1 - 0.026f * blood + 0.018f * grain));
 }
 
-/// Sends the places that the fine relief of a surface is tied to. The back of a tongue is unrolled
-/// from its root over its tip: distance from its middle, and y + z.
-void send_rest_of(Role role, std::span<const Eigen::Vector3f> places, GpuMesh& mesh) {
-  if (role == Role::face) mesh.send_rest(places);
-  if (role != Role::tongue) return;
+/// Places that the fine relief of a surface is tied to. The back of a tongue is unrolled about a
+/// transverse axis, from its tip to its root.
+std::vector<Eigen::Vector3f> relief_places(Role role, std::span<const Eigen::Vector3f> places) {
+  if (role != Role::tongue) return {places.begin(), places.end()};
   Eigen::AlignedBox3f box;
   for (const auto& p : places) box.extend(p);
-  std::vector<Eigen::Vector3f> back;
-  back.reserve(places.size());
-  for (const auto& p : places) back.emplace_back(p.x() - box.center().x(), p.y() + p.z(), 0);
-  mesh.send_rest(back);
+  std::vector<Eigen::Vector3f> unrolled;
+  unrolled.reserve(places.size());
+  for (const auto& p : places) {
+    const float back = (p.y() - box.min().y()) / std::max(box.sizes().y(), 1e-3f);
+    const float side = 2 * static_cast<float>(smooth_step((back - 0.2) / 0.6)) - 1;
+    unrolled.emplace_back(p.x() - box.center().x(), p.y() + side * (box.max().z() - p.z()), 0);
+  }
+  return unrolled;
 }
+
+/// 0 to 1: 1 where there are no papillae: there are none on the sides of a tongue, where that
+/// unrolling would draw them out, nor under it.
+float smoothness_of_tongue(const Eigen::Vector3f& normal) {
+  const double aside = smooth_step((std::abs(normal.x()) - 0.5) / 0.35);
+  const double below = smooth_step((-0.2 - normal.z()) / 0.5);
+  return static_cast<float>(1 - (1 - aside) * (1 - below));
+}
+
+/// Whether a surface has a fine relief.
+bool has_relief(Role role) { return role == Role::face || role == Role::tongue; }
 
 /// Box that contains the red of the lips: the ellipsoid inscribed in it does.
 Eigen::AlignedBox3f lips_about(std::span<const int> rim, std::span<const Eigen::Vector3f> places) {
@@ -140,8 +155,13 @@ std::vector<Drawable> make_drawables(std::span<const Part* const> parts, const M
     const auto use = keeps_shape(part.role) ? GpuMesh::Use::still : GpuMesh::Use::moving;
     const bool own_colors = part.mesh.colors.size() == positions.size();
     const auto material = material_of(part.role);
-    std::vector<float> curvature;
-    if (part.role == Role::face) curvature = vertex_curvature(positions, triangles, normals);
+    std::vector<float> trait(positions.size(), 0);  // by its role
+    if (part.role == Role::face) {
+      trait = vertex_curvature(positions, triangles, normals);
+      for (float& value : trait) value /= SkinTable::max_curvature;
+    } else if (part.role == Role::tongue) {
+      std::transform(normals.begin(), normals.end(), trait.begin(), smoothness_of_tongue);
+    }
     std::vector<float> lash_radius(positions.size(), 0);
     if (part.role == Role::eyes) lash_radius = lash_radii(part.mesh);
     std::vector<GpuMesh::Bytes> colors(positions.size()), extras(positions.size());
@@ -155,16 +175,15 @@ std::vector<Drawable> make_drawables(std::span<const Part* const> parts, const M
       if (part.role == Role::face) color = mottled(color, positions[i]);
       colors[i] = {to_byte(color.x()), to_byte(color.y()), to_byte(color.z()),
                    to_byte(occlusion[p].together[i])};
-      extras[i] = {to_byte(occlusion[p].alone[i]),
-                   to_byte(curvature.empty() ? 0.f : curvature[i] / SkinTable::max_curvature),
-                   to_byte(gloss), to_byte(lash_radius[i] / thickest_lash_mm)};
+      extras[i] = {to_byte(occlusion[p].alone[i]), to_byte(trait[i]), to_byte(gloss),
+                   to_byte(lash_radius[i] / thickest_lash_mm)};
     }
     GpuMesh mesh(positions, triangles, use);
     mesh.add_coarse(positions, triangles);
     mesh.send_shape(positions, normals);
     mesh.send_colors(colors);
     mesh.send_extras(extras);
-    send_rest_of(part.role, positions, mesh);
+    if (has_relief(part.role)) mesh.send_rest(relief_places(part.role, positions));
     std::vector<Crease> creases;
     if (part.role == Role::face) creases = find_creases(positions, normals, occlusion[p].together);
     std::optional<SurfaceEdges> edges, coarse_edges;
@@ -207,7 +226,7 @@ std::vector<Drawable> drawables_like(std::span<const Drawable> others) {
     mesh.send_shape(positions, normals);
     mesh.send_colors(other.colors);
     mesh.send_extras(other.extras);
-    send_rest_of(part.role, positions, mesh);
+    if (has_relief(part.role)) mesh.send_rest(relief_places(part.role, positions));
     drawables.push_back({&part, other.material, other.closed, other.box, std::move(mesh),
                          other.creases, other.colors, other.extras, other.edges,
                          other.coarse_edges});

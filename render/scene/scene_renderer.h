@@ -26,7 +26,7 @@ struct PictureSettings {
   int width = 1280, height = 720;
   int samples = 4;  // of multisampling; limited by the context
   bool shadows = true;
-  bool coarse = false;   // shapes within 0.2 mm, skin without pores: for fast pictures
+  bool coarse = false;   // shapes within 0.2 mm, skin and tongue without relief: for fast pictures
   bool contacts = true;  // mark contact points
   bool folds = true;     // of compressed skin: see skin_folds.h
   /// Signs of life at the frame's time, where shows_life. The camera must be that of

@@ -39,7 +39,8 @@ const char* const vertex_source = R"(
 layout(location = 0) in vec3 position;
 layout(location = 1) in vec3 normal;
 layout(location = 2) in vec4 color;  // sRGB, occlusion with everything at rest
-// occlusion by its own body, curvature, gloss, fraction of lip; of eyes: radius of a lash
+// occlusion by its own body; curvature, of a tongue: smoothness; gloss; fraction of lip, of eyes:
+// radius of a lash
 layout(location = 3) in vec4 extra;
 layout(location = 4) in float value;  // value of a colour map
 layout(location = 5) in vec3 rest;  // position at rest, of skin; of a tongue: on its back

@@ -186,20 +186,21 @@ vec3 map_color() {
   return c;
 }
 
-// Papillae of a tongue; along its middle a furrow, beside that the coating.
+// Papillae of a tongue; along its middle a furrow, beside that the coating. Smooth mucosa where
+// traits.y is 1.
 void roughen(vec3 v, inout vec3 n, inout vec3 base, inout float wet) {
-  float pixel_mm = pixel_on(n, v);
-  vec4 fine = detail(vec3(rest_place.xy, 0.0), fine_period, pixel_mm);
-  vec4 coarse = detail(vec3(rest_place.yx, 0.0), coarse_period, pixel_mm);
+  float pixel_mm = pixel_on(n, v), rough = 1.0 - traits.y;
+  vec4 fine = rough * detail(vec3(rest_place.xy, 0.0), fine_period, pixel_mm);
+  vec4 coarse = rough * detail(vec3(rest_place.yx, 0.0), coarse_period, pixel_mm);
   float aside = mod(rest_place.x + 0.5 * rest_period, rest_period) - 0.5 * rest_period
               + 3.0 * coarse.b;
-  float furrow = exp(-aside * aside / 2.2), coating = exp(-aside * aside / 90.0);
-  vec3 slope = 1.3 * fine.xyz + 0.5 * coarse.yxz + vec3(0.3 * aside * furrow, 0.0, 0.0);
+  float furrow = rough * exp(-aside * aside / 2.2), coating = rough * exp(-aside * aside / 90.0);
+  vec3 slope = 1.3 * fine.xyy + 0.5 * coarse.yxx + vec3(0.3 * aside * furrow, 0.0, 0.0);
   n = normalize(n - (slope - n * dot(slope, n)));
   base *= 1.0 + vec3(0.25, 0.7, 0.7) * (0.6 * fine.a + 0.4 * coarse.a);
   base = mix(base, vec3(0.62, 0.44, 0.40), 0.3 * coating * (1.0 + coarse.a));
   base *= 1.0 - 0.25 * furrow;
-  wet *= clamp(0.4 + 1.2 * fine.a, 0.0, 1.0);
+  wet = mix(1.0, clamp(0.4 + 1.2 * fine.a, 0.0, 1.0), rough);
 }
 
 void main() {
@@ -212,7 +213,7 @@ void main() {
   }
   // An open surface is lit from its visible side.
   if (!gl_FrontFacing) n = -n;
-  vec3 base = albedo;
+  vec3 smooth_normal = n, base = albedo;
   float wet = 1.0 - traits.y;
   if (papillae) roughen(v, n, base, wet);
   float nv = clamp(dot(n, v), 0.0, 1.0);
@@ -235,7 +236,7 @@ void main() {
   // Grazing light would be shaded by the facets at random: it fades by the angle to the light
   // alone.
   float grazed = smoothstep(-0.05, 0.3, kn);
-  float lit = mix(1.0, key_visibility(n, grazed > 0.0).x, grazed) * depth;
+  float lit = mix(1.0, key_visibility(smooth_normal, grazed > 0.0).x, grazed) * depth;
   vec3 soft = vec3(wrapped(kn, wrap)) + scatter * (wrapped(kn, wrap + 0.45) - wrapped(kn, wrap));
   vec3 occlusion = colored_occlusion(ao * sqrt(ao), base);
   // In the mouth most light is reflected by its red walls.
@@ -263,7 +264,8 @@ void main() {
     c += coat * wet * reflectance * (key_color * specular(n, v, mirrored_key, 0.16) * (eye ? sqrt(lit) : lit)
        + fill_color * (eye ? 3.0 : 1.0) * specular(n, v, fill_direction, 0.2) * open);
   }
-  float a = seen_through ? 1.0 - pow(1.0 - opacity, 1.0 / max(nv, 0.35)) : opacity;
+  float facing = max(dot(smooth_normal, v), 0.35);
+  float a = seen_through ? 1.0 - pow(1.0 - opacity, 1.0 / facing) : opacity;
   result = mix(vec4(display(c), a), colored, covered);
 }
 )";
@@ -302,11 +304,12 @@ void main() {
   // affect the specular more than the diffuse part.
   float pixel_mm = pixel_on(smooth_normal, v);
   bool furrowed = gloss > 0.15 && beside_mouth();
+  float furrows = furrowed ? smoothstep(0.15, 0.4, gloss) : 0.0;
   vec3 cells = furrowed ? lip_cells : vec3(1.0);
   vec4 coarse = smooth_skin ? vec4(0.0) : detail(rest_place.zxy, coarse_period, pixel_mm);
   vec3 bent = vec3(furrowed ? 1.2 * coarse.x : 0.0, 0.0, 0.0);
   vec4 fine = smooth_skin ? vec4(0.0) : detail(rest_place * cells + bent, fine_period, pixel_mm);
-  vec3 slope = (furrowed ? 1.5 * gloss : 0.27 - 0.135 * gloss) * fine.xyz * cells
+  vec3 slope = mix(0.27 - 0.135 * gloss, 1.5 * gloss, furrows) * fine.xyz * cells
              + (0.12 - 0.06 * gloss) * coarse.xyz;
   vec3 n = normalize(smooth_normal - (slope - smooth_normal * dot(slope, smooth_normal)));
   vec3 shine_normal = normalize(mix(smooth_normal, n, 1.6));
@@ -325,7 +328,7 @@ void main() {
   float fn = dot(n, fill_direction), rn = dot(n, rim_direction);
   vec3 fill = max(vec3(fn) + bleed, 0.0) / ((1.0 + bleed) * (1.0 + bleed));
   vec3 rim = max(vec3(rn) + 0.5 * bleed, 0.0) / ((1.0 + 0.5 * bleed) * (1.0 + 0.5 * bleed));
-  float pore = clamp(1.0 + (furrowed ? 0.8 : 0.55) * fine.a + 0.35 * coarse.a, 0.6, 1.4);
+  float pore = clamp(1.0 + mix(0.55, 0.8, furrows) * fine.a + 0.35 * coarse.a, 0.6, 1.4);
   vec3 light = key_color * through * tinted + (fill_color * fill + rim_color * rim) * occlusion
              + ambient_light(n, v) * occlusion;
   float open = ao * ao;
@@ -335,7 +338,7 @@ void main() {
              + open * (fill_color * specular(shine_normal, v, fill_direction, wide)
                      + rim_color * specular(shine_normal, v, rim_direction, wide));
   shine *= mix(pore * pore, 1.0, gloss);
-  vec3 darker = furrowed ? vec3(0.35, 0.60, 0.60) : vec3(0.05, 0.10, 0.12);
+  vec3 darker = mix(vec3(0.05, 0.10, 0.12), vec3(0.35, 0.60, 0.60), furrows);
   vec3 c = albedo * mix(vec3(1.0), vec3(pore), darker) * light
          + mix(0.028, 0.05, gloss) * shine;
   c += 0.5 * ambient_light(reflect(-v, n), v) * fresnel(nv, 0.028) * (1.0 - wide) * open;
