@@ -89,6 +89,17 @@ Eigen::AlignedBox3f lips_about(std::span<const int> rim, std::span<const Eigen::
   return {middle - half, middle + half};
 }
 
+/// What the pictures of a face with a mouth have. rim: of the mouth.
+void add_looks_of_mouth(Drawable& face, std::span<const Eigen::Vector3f> positions,
+                        std::span<const Eigen::Vector3f> normals, std::span<const int> rim,
+                        std::span<const Part* const> parts) {
+  face.lips = lips_about(rim, positions);
+  face.neck_cut = find_neck_cut(positions, face.triangles(), rim);
+  face.folds = std::make_shared<const SkinFolds>(positions, normals, face.triangles(), rim);
+  face.hollows = std::make_shared<const CheekHollows>(positions, normals, rim, parts);
+  face.pad = std::make_shared<const SubmentalPad>(positions, face.triangles(), rim);
+}
+
 /// Mean colour of a face's skin about the lashes, sRGB; none without.
 std::optional<Eigen::Vector3f> skin_about(const TriMesh& eyes, std::span<const float> lash_radius,
                                           const TriMesh* face) {
@@ -199,16 +210,8 @@ std::vector<Drawable> make_drawables(std::span<const Part* const> parts, const M
     if (part.role == Role::eyes)
       drawables.back().behind_lashes =
           skin_about(part.mesh, lash_radius, face == parts.end() ? nullptr : &(*face)->mesh);
-    if (!mouth_rim.empty()) {
-      drawables.back().lips = lips_about(mouth_rim, positions);
-      drawables.back().neck_cut = find_neck_cut(positions, drawables.back().triangles(), mouth_rim);
-      drawables.back().folds = std::make_shared<const SkinFolds>(
-          positions, normals, drawables.back().triangles(), mouth_rim);
-      drawables.back().hollows =
-          std::make_shared<const CheekHollows>(positions, normals, mouth_rim, parts);
-      drawables.back().pad =
-          std::make_shared<const SubmentalPad>(positions, drawables.back().triangles(), mouth_rim);
-    }
+    if (!mouth_rim.empty())
+      add_looks_of_mouth(drawables.back(), positions, normals, mouth_rim, parts);
   }
   return drawables;
 }
