@@ -12,6 +12,7 @@
 #include "render/face/neck_cut.h"
 #include "render/face/shade_layers.h"
 #include "render/face/skin_folds.h"
+#include "render/face/tooth_tint.h"
 #include "render/mesh/ambient_occlusion.h"
 #include "render/mesh/cut_cover.h"
 #include "render/mesh/vertex_normals.h"
@@ -173,6 +174,7 @@ std::vector<Drawable> make_drawables(std::span<const Part* const> parts, const M
     } else if (part.role == Role::tongue) {
       std::transform(normals.begin(), normals.end(), trait.begin(), smoothness_of_tongue);
     }
+    const auto tints = own_colors ? std::vector<Eigen::Vector3f>{} : tooth_tint(part);
     std::vector<float> lash_radius(positions.size(), 0);
     if (part.role == Role::eyes) lash_radius = lash_radii(part.mesh);
     std::vector<GpuMesh::Bytes> colors(positions.size()), extras(positions.size());
@@ -184,6 +186,7 @@ std::vector<Drawable> make_drawables(std::span<const Part* const> parts, const M
       const float redness = (color.x() - color.y()) / std::max(color.x(), 0.05f);
       const float gloss = own_colors ? std::clamp((redness - 0.30f) / 0.18f, 0.f, 1.f) : 0.f;
       if (part.role == Role::face) color = mottled(color, positions[i]);
+      if (!tints.empty()) color = color.cwiseProduct(tints[i]);
       colors[i] = {to_byte(color.x()), to_byte(color.y()), to_byte(color.z()),
                    to_byte(occlusion[p].together[i])};
       extras[i] = {to_byte(occlusion[p].alone[i]), to_byte(trait[i]), to_byte(gloss),
