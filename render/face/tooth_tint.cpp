@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Vector3f;
 
-const Vector3f dentine(.985f, .93f, .80f), canine(.985f, .955f, .89f), enamel_edge(.95f, .98f, 1);
+const Vector3f dentine(.985f, .94f, .83f), canine(.985f, .962f, .905f), enamel_edge(.95f, .98f, 1);
 constexpr double edge_mm = 1.8;                     // extent of the translucent edge
 constexpr double neck_from_mm = 3, neck_to_mm = 9;  // from there
 
