@@ -209,6 +209,7 @@ std::vector<Drawable> make_drawables(std::span<const Part* const> parts, const M
                          std::move(creases), std::move(colors), std::move(extras), std::move(edges),
                          std::move(coarse_edges)});
     drawables.back().own = std::move(own);
+    drawables.back().papillae = part.role == Role::tongue;
     drawables.back().uneven = std::move(uneven);
     if (part.role == Role::eyes)
       drawables.back().behind_lashes =
@@ -237,6 +238,7 @@ std::vector<Drawable> drawables_like(std::span<const Drawable> others) {
                          other.creases, other.colors, other.extras, other.edges,
                          other.coarse_edges});
     drawables.back().own = other.own;
+    drawables.back().papillae = other.papillae;
     drawables.back().uneven = other.uneven;
     drawables.back().behind_lashes = other.behind_lashes;
     drawables.back().folds = other.folds;

@@ -33,6 +33,7 @@ struct Drawable {
   /// sRGB, of the skin around the lashes of an eyes part; none without.
   std::optional<Eigen::Vector3f> behind_lashes = {};
   bool mapped = false;                // coloured by its values
+  bool papillae = false;              // has the back of a tongue
   std::optional<GpuMesh> finer = {};  // drawn instead while it is mapped
   std::size_t finer_vertices = 0;
   std::vector<Eigen::Vector3f> undressed = {};  // vertices of a finer mesh without colours as yet

@@ -32,6 +32,20 @@ std::vector<Eigen::Vector3f> rim_normals(std::span<const int> rim,
   return normals;
 }
 
+/// Places that the relief of a lining's tongue is tied to: from its middle, and backward.
+std::vector<Eigen::Vector3f> back_of_tongue(const MouthLining& lining) {
+  float middle = 0, weights = 0;
+  for (std::size_t v = 0; v < lining.rest.size(); ++v) {
+    middle += lining.tongue[v] * lining.rest[v].x();
+    weights += lining.tongue[v];
+  }
+  if (weights > 0) middle /= weights;
+  std::vector<Eigen::Vector3f> places;
+  places.reserve(lining.rest.size());
+  for (const auto& p : lining.rest) places.emplace_back(p.x() - middle, p.y(), 0);
+  return places;
+}
+
 }  // namespace
 
 MouthCavity::MouthCavity(const MouthLining& lining, const Drawable& face) : lining_(lining) {
@@ -64,7 +78,7 @@ MouthCavity::MouthCavity(const MouthLining& lining, const Drawable& face) : lini
     }
     const std::uint8_t seen = to_byte(sky);
     colors[v] = {to_byte(color.x()), to_byte(color.y()), to_byte(color.z()), seen};
-    extras[v] = {seen, 0, 255, to_byte(lip)};
+    extras[v] = {seen, to_byte(1 - lining_.tongue[v]), 255, to_byte(lip)};
   }
   GpuMesh mesh(lining_.rest, lining_.triangles, GpuMesh::Use::moving);
   Eigen::AlignedBox3f box;
@@ -81,6 +95,9 @@ MouthCavity::MouthCavity(const MouthLining& lining, const Drawable& face) : lini
                              {}});
   drawable_->mesh.send_colors(drawable_->colors);
   drawable_->mesh.send_extras(drawable_->extras);
+  drawable_->papillae =
+      std::any_of(lining_.tongue.begin(), lining_.tongue.end(), [](float t) { return t > 0; });
+  if (drawable_->papillae) drawable_->mesh.send_rest(back_of_tongue(lining_));
 }
 
 Drawable& MouthCavity::place(const GpuMesh& face, const Pose& X_CM) {

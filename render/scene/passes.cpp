@@ -219,7 +219,7 @@ GlProgram& Passes::begin(Programs& programs, const DrawItem& item, const Picture
     glActiveTexture(GL_TEXTURE2);
     glBindTexture(GL_TEXTURE_2D, colour_table_);
   }
-  const bool papillae = role == Role::tongue && !mapped && !view.coarse;
+  const bool papillae = item.drawable->papillae;
   if (role == Role::face || papillae) {
     glActiveTexture(GL_TEXTURE3);
     glBindTexture(GL_TEXTURE_3D, skin_detail_);
@@ -234,16 +234,17 @@ GlProgram& Passes::begin(Programs& programs, const DrawItem& item, const Picture
   const bool glass = role == Role::face && item.opacity < glass_opacity;
   const auto& neck_cut = item.drawable->neck_cut;
   const bool vanishing = neck_cut && !mapped && !item.clipped && view.backdrop;
-  GlProgram& program = programs.of({.shadowed = view.shadows && !glass,
-                                    .mapped = mapped,
-                                    .coated = material.coat > 0,
-                                    .cuttable = item.cut(),
-                                    .seen_through = !item.opaque(),
-                                    .skin = role == Role::face,
-                                    .smooth_skin = role == Role::face && (view.coarse || glass),
-                                    .papillae = papillae,
-                                    .vanishing = vanishing,
-                                    .deferred = deferred});
+  GlProgram& program =
+      programs.of({.shadowed = view.shadows && !glass,
+                   .mapped = mapped,
+                   .coated = material.coat > 0,
+                   .cuttable = item.cut(),
+                   .seen_through = !item.opaque(),
+                   .skin = role == Role::face,
+                   .smooth_skin = (role == Role::face || papillae) && (view.coarse || glass),
+                   .papillae = papillae,
+                   .vanishing = vanishing,
+                   .deferred = deferred});
   program.use();
   view.lights.set_in(program);
   program.set("shadow_matrix", view.shadow);

@@ -15,7 +15,7 @@ struct ShaderSource {
 struct Shading {
   bool shadowed = false, mapped = false, coated = false, cuttable = false, seen_through = false;
   bool skin = false;         // otherwise bone, teeth, eyes, ...: type of the stored pixels
-  bool smooth_skin = false;  // without pores
+  bool smooth_skin = false;  // without pores or papillae
   bool papillae = false;     // of a tongue
   bool vanishing = false;    // skin of a neck that vanishes towards its cut
   bool deferred = false;     // lights stored pixels (see surface_buffer.h)

@@ -189,6 +189,8 @@ vec3 map_color() {
 // Papillae of a tongue; along its middle a furrow, beside that the coating. Smooth mucosa where
 // traits.y is 1.
 void roughen(vec3 v, inout vec3 n, inout vec3 base, inout float wet) {
+  wet = 1.0;
+  if (smooth_skin) return;
   float pixel_mm = pixel_on(n, v), rough = 1.0 - traits.y;
   vec4 fine = rough * detail(vec3(rest_place.xy, 0.0), fine_period, pixel_mm);
   vec4 coarse = rough * detail(vec3(rest_place.yx, 0.0), coarse_period, pixel_mm);

@@ -1,4 +1,5 @@
-// The relief of the lips' red is furrows from lip to lip; that of the skin beside them is not.
+// The relief of the lips' red is furrows from lip to lip; that of the skin beside them is not. The
+// tongue of a lining has papillae.
 #include <algorithm>
 #include <cmath>
 
@@ -9,6 +10,7 @@ namespace condyle {
 namespace {
 
 using LipPictures = WithContext;
+using MouthPictures = WithContext;
 
 /// The built-in patient, its lips seen from close by.
 struct LipFace {
@@ -41,6 +43,24 @@ TEST_F(LipPictures, FurrowsOfTheRedRunFromLipToLip) {
   EXPECT_GT(lip, 3);
   EXPECT_LT(chin, 1.5);
   EXPECT_GT(chin, 0.5);
+}
+
+TEST_F(MouthPictures, ATongueOfTheMouthsLiningHasPapillaeThatCoarsePicturesLack) {
+  const OpenedPatient& p = opened_patient();
+  auto parts = p.scene.patient.parts;
+  std::erase_if(parts, [](const Part& part) { return part.role == Role::tongue; });
+  SceneRenderer renderer(parts);
+  renderer.update(opened_patient().frame("open 40"));
+  Camera camera = front_camera(16);
+  camera.direction = Eigen::Vector3d(0, -1, 0.4).normalized();
+  camera.target = {0, -60, -82};
+  auto settings = mask_settings(160);
+  settings.shadows = false;
+  const auto rough = roughness(renderer.picture(camera, settings));
+  settings.coarse = true;
+  const auto smooth = roughness(renderer.picture(camera, settings));
+  EXPECT_GT(rough.first, 5 * smooth.first);
+  EXPECT_GT(rough.second, 5 * smooth.second);
 }
 
 }  // namespace
