@@ -56,6 +56,8 @@ MouthCavity::MouthCavity(const MouthLining& lining, const Drawable& face) : lini
       beside_rim_.push_back(t);
   const std::size_t count = lining_.rest.size(), around = lining_.rim.size();
   std::vector<GpuMesh::Bytes> colors(count), extras(count);
+  const bool papillae =
+      std::any_of(lining_.tongue.begin(), lining_.tongue.end(), [](float t) { return t > 0; });
   for (std::size_t v = 0; v < count; ++v) {
     // As red as the inner side of the lips, paler on the cheeks; little of the sky is visible from
     // the throat.
@@ -78,7 +80,8 @@ MouthCavity::MouthCavity(const MouthLining& lining, const Drawable& face) : lini
     }
     const std::uint8_t seen = to_byte(sky);
     colors[v] = {to_byte(color.x()), to_byte(color.y()), to_byte(color.z()), seen};
-    extras[v] = {seen, to_byte(1 - lining_.tongue[v]), 255, to_byte(lip)};
+    extras[v] = {seen, papillae ? to_byte(1 - lining_.tongue[v]) : std::uint8_t{0}, 255,
+                 to_byte(lip)};
   }
   GpuMesh mesh(lining_.rest, lining_.triangles, GpuMesh::Use::moving);
   Eigen::AlignedBox3f box;
@@ -95,9 +98,8 @@ MouthCavity::MouthCavity(const MouthLining& lining, const Drawable& face) : lini
                              {}});
   drawable_->mesh.send_colors(drawable_->colors);
   drawable_->mesh.send_extras(drawable_->extras);
-  drawable_->papillae =
-      std::any_of(lining_.tongue.begin(), lining_.tongue.end(), [](float t) { return t > 0; });
-  if (drawable_->papillae) drawable_->mesh.send_rest(back_of_tongue(lining_));
+  drawable_->papillae = papillae;
+  if (papillae) drawable_->mesh.send_rest(back_of_tongue(lining_));
 }
 
 Drawable& MouthCavity::place(const GpuMesh& face, const Pose& X_CM) {
