@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "render/scene/mouth_cavity.h"
 #include "tests/render/face/opened_patient.h"
 #include "tests/render/scene_fixture.h"
 
@@ -61,6 +62,28 @@ TEST_F(MouthPictures, ATongueOfTheMouthsLiningHasPapillaeThatCoarsePicturesLack)
   const auto smooth = roughness(renderer.picture(camera, settings));
   EXPECT_GT(rough.first, 5 * smooth.first);
   EXPECT_GT(rough.second, 5 * smooth.second);
+}
+
+TEST_F(MouthPictures, OnlyALiningWithATongueIsRough) {
+  for (const bool with_tongue : {false, true}) {
+    std::vector<const Part*> parts;
+    for (const Part* part : opened_patient().parts)
+      if (with_tongue || part->role != Role::tongue) parts.push_back(part);
+    std::vector<Part> own;
+    for (const Part* part : parts) own.push_back(*part);
+    const auto lining = line_mouth(own);
+    ASSERT_TRUE(lining);
+    const auto drawables = make_drawables(parts, &*lining);
+    const auto face = std::find_if(drawables.begin(), drawables.end(),
+                                   [](const Drawable& d) { return d.part->role == Role::face; });
+    MouthCavity cavity(*lining, *face);
+    const Drawable& made = cavity.place(face->mesh, {});
+    EXPECT_EQ(made.papillae, !with_tongue);
+    int dull = 0, wet = 0;
+    for (const auto& extra : made.extras) dull += extra[1] > 200, wet += extra[1] < 50;
+    EXPECT_EQ(dull > 0, !with_tongue);
+    EXPECT_GT(wet, 50);
+  }
 }
 
 }  // namespace
