@@ -6,12 +6,12 @@
 
 #include "engine/core/hash.h"
 #include "engine/core/user_cache.h"
-#include "engine/math/smooth_step.h"
 #include "engine/mesh/triangle_tree.h"
 #include "render/face/lashes.h"
 #include "render/face/neck_cut.h"
 #include "render/face/shade_layers.h"
 #include "render/face/skin_folds.h"
+#include "render/face/tongue_relief.h"
 #include "render/face/tooth_tint.h"
 #include "render/mesh/ambient_occlusion.h"
 #include "render/mesh/cut_cover.h"
@@ -54,32 +54,11 @@ Eigen::Vector3f mottled(const Eigen::Vector3f& color, const Eigen::Vector3f& p) 
                                             1 - 0.026f * blood + 0.018f * grain));
 }
 
-/// Places that the fine relief of a surface is tied to. The back of a tongue is unrolled about a
-/// transverse axis, from its tip to its root.
-std::vector<Eigen::Vector3f> relief_places(Role role, std::span<const Eigen::Vector3f> places) {
-  if (role != Role::tongue) return {places.begin(), places.end()};
-  Eigen::AlignedBox3f box;
-  for (const auto& p : places) box.extend(p);
-  std::vector<Eigen::Vector3f> unrolled;
-  unrolled.reserve(places.size());
-  for (const auto& p : places) {
-    const float back = (p.y() - box.min().y()) / std::max(box.sizes().y(), 1e-3f);
-    const float side = 2 * static_cast<float>(smooth_step((back - 0.2) / 0.6)) - 1;
-    unrolled.emplace_back(p.x() - box.center().x(), p.y() + side * (box.max().z() - p.z()), 0);
-  }
-  return unrolled;
+/// Sends the places that the fine relief of skin or a tongue is tied to.
+void send_rest_of(Role role, std::span<const Eigen::Vector3f> places, GpuMesh& mesh) {
+  if (role == Role::face) mesh.send_rest(places);
+  if (role == Role::tongue) mesh.send_rest(unrolled_tongue(places));
 }
-
-/// 0 to 1: 1 where there are no papillae: there are none on the sides of a tongue, where that
-/// unrolling would draw them out, nor under it.
-float smoothness_of_tongue(const Eigen::Vector3f& normal) {
-  const double aside = smooth_step((std::abs(normal.x()) - 0.5) / 0.35);
-  const double below = smooth_step((-0.2 - normal.z()) / 0.5);
-  return static_cast<float>(1 - (1 - aside) * (1 - below));
-}
-
-/// Whether a surface has a fine relief.
-bool has_relief(Role role) { return role == Role::face || role == Role::tongue; }
 
 /// Box that contains the red of the lips: the ellipsoid inscribed in it does.
 Eigen::AlignedBox3f lips_about(std::span<const int> rim, std::span<const Eigen::Vector3f> places) {
@@ -197,7 +176,7 @@ std::vector<Drawable> make_drawables(std::span<const Part* const> parts, const M
     mesh.send_shape(positions, normals);
     mesh.send_colors(colors);
     mesh.send_extras(extras);
-    if (has_relief(part.role)) mesh.send_rest(relief_places(part.role, positions));
+    send_rest_of(part.role, positions, mesh);
     std::vector<Crease> creases;
     if (part.role == Role::face) creases = find_creases(positions, normals, occlusion[p].together);
     std::optional<SurfaceEdges> edges, coarse_edges;
@@ -233,7 +212,7 @@ std::vector<Drawable> drawables_like(std::span<const Drawable> others) {
     mesh.send_shape(positions, normals);
     mesh.send_colors(other.colors);
     mesh.send_extras(other.extras);
-    if (has_relief(part.role)) mesh.send_rest(relief_places(part.role, positions));
+    send_rest_of(part.role, positions, mesh);
     drawables.push_back({&part, other.material, other.closed, other.box, std::move(mesh),
                          other.creases, other.colors, other.extras, other.edges,
                          other.coarse_edges});

@@ -6,6 +6,7 @@
 #include <unordered_map>
 #include <unordered_set>
 
+#include "render/face/tongue_relief.h"
 #include "render/mesh/vertex_normals.h"
 
 namespace condyle {
@@ -30,20 +31,6 @@ std::vector<Eigen::Vector3f> rim_normals(std::span<const int> rim,
   normals.reserve(rim.size());
   for (const int v : rim) normals.push_back(sums.at(v).normalized());
   return normals;
-}
-
-/// Places that the relief of a lining's tongue is tied to: from its middle, and backward.
-std::vector<Eigen::Vector3f> back_of_tongue(const MouthLining& lining) {
-  float middle = 0, weights = 0;
-  for (std::size_t v = 0; v < lining.rest.size(); ++v) {
-    middle += lining.tongue[v] * lining.rest[v].x();
-    weights += lining.tongue[v];
-  }
-  if (weights > 0) middle /= weights;
-  std::vector<Eigen::Vector3f> places;
-  places.reserve(lining.rest.size());
-  for (const auto& p : lining.rest) places.emplace_back(p.x() - middle, p.y(), 0);
-  return places;
 }
 
 }  // namespace
@@ -99,7 +86,7 @@ MouthCavity::MouthCavity(const MouthLining& lining, const Drawable& face) : lini
   drawable_->mesh.send_colors(drawable_->colors);
   drawable_->mesh.send_extras(drawable_->extras);
   drawable_->papillae = papillae;
-  if (papillae) drawable_->mesh.send_rest(back_of_tongue(lining_));
+  if (papillae) drawable_->mesh.send_rest(unrolled_tongue(lining_));
 }
 
 Drawable& MouthCavity::place(const GpuMesh& face, const Pose& X_CM) {
