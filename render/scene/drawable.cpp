@@ -76,7 +76,7 @@ void add_looks_of_mouth(Drawable& face, std::span<const Eigen::Vector3f> positio
   face.lips = lips_about(rim, positions);
   face.neck_cut = find_neck_cut(positions, face.triangles(), rim);
   face.folds = std::make_shared<const SkinFolds>(positions, normals, face.triangles(), rim);
-  face.hollows = std::make_shared<const CheekHollows>(positions, normals, rim, parts);
+  face.cheeks = std::make_shared<const CheekThickness>(positions, normals, rim, parts);
   face.pad = std::make_shared<const SubmentalPad>(positions, face.triangles(), rim);
 }
 
@@ -221,7 +221,7 @@ std::vector<Drawable> drawables_like(std::span<const Drawable> others) {
     drawables.back().uneven = other.uneven;
     drawables.back().behind_lashes = other.behind_lashes;
     drawables.back().folds = other.folds;
-    drawables.back().hollows = other.hollows;
+    drawables.back().cheeks = other.cheeks;
     drawables.back().pad = other.pad;
     drawables.back().lips = other.lips;
     drawables.back().neck_cut = other.neck_cut;
@@ -321,8 +321,8 @@ void Drawable::move_face(std::vector<Eigen::Vector3f> positions, const FaceLook&
   even_rim(positions, uneven);
   if (pad && look.folded) pad->apply(positions);
   auto shades = folds && look.folded ? folds->apply(positions) : std::vector<SkinFolds::Shade>{};
-  if (hollows && look.folded)
-    for (const SkinFolds::Shade& shade : hollows->apply(positions)) shades.push_back(shade);
+  if (cheeks && look.folded)
+    for (const SkinFolds::Shade& shade : cheeks->apply(positions)) shades.push_back(shade);
   if (look.alive)
     for (const SkinFolds::Shade& shade : look.alive(positions)) shades.push_back(shade);
   if (look.relief || relief_moved) {

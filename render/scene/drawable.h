@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "render/face/cheek_hollows.h"
+#include "render/face/cheek_thickness.h"
 #include "render/face/mouth_lining.h"
 #include "render/face/skin_folds.h"
 #include "render/face/submental_pad.h"
@@ -46,7 +46,7 @@ struct Drawable {
   }
   std::optional<GpuMesh> at_rest = {};          // of a deforming part, for its ghost
   std::shared_ptr<const SkinFolds> folds = {};  // of a face only
-  std::shared_ptr<const CheekHollows> hollows = {};
+  std::shared_ptr<const CheekThickness> cheeks = {};
   std::shared_ptr<const SubmentalPad> pad = {};
   Eigen::AlignedBox3f lips = {};       // about the mouth of a face, at rest; empty without one
   std::optional<float> neck_cut = {};  // height of a face's lower end, where it is closed, mm
@@ -65,7 +65,7 @@ struct Drawable {
 
   /// Changes of a face's shape in pictures alone.
   struct FaceLook {
-    bool folded = true;  // with folds of its skin, hollows of its cheeks and the pad under its chin
+    bool folded = true;  // with folds of its skin, thickness of its cheeks, pad of its chin
     // Moves its vertices and returns the shade of creases.
     std::function<std::vector<SkinFolds::Shade>(std::span<Eigen::Vector3f>)> alive = {};
     // Moves the places, at rest, that the fine relief of its skin is tied to.

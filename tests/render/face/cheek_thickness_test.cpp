@@ -1,6 +1,6 @@
-// Cheeks of a real opening of the built-in patient sink in, in pictures alone; at rest they are as
-// without hollows, bit for bit.
-#include "render/face/cheek_hollows.h"
+// Cheeks of the built-in patient sink in as the mouth really opens and bulge in a real smile, in
+// pictures alone; at rest nothing changes, bit for bit.
+#include "render/face/cheek_thickness.h"
 
 #include <gtest/gtest.h>
 
@@ -16,9 +16,9 @@ namespace {
 
 using Eigen::Vector3f;
 
-const CheekHollows& hollows() {
+const CheekThickness& cheeks() {
   static const OpenedPatient& p = opened_patient();
-  static const CheekHollows made(p.rest, p.normals, p.prepared.lining()->rim, p.parts);
+  static const CheekThickness made(p.rest, p.normals, p.prepared.lining()->rim, p.parts);
   return made;
 }
 
@@ -32,31 +32,31 @@ float deepest(const std::vector<Vector3f>& smooth, const std::vector<Vector3f>& 
   return most;
 }
 
-TEST(CheekHollowsTest, RestStaysBitForBit) {
+TEST(CheekThicknessTest, RestStaysBitForBit) {
   auto places = opened_patient().rest;
-  EXPECT_TRUE(hollows().apply(places).empty());
+  EXPECT_TRUE(cheeks().apply(places).empty());
   EXPECT_EQ(places, opened_patient().rest);
 }
 
-TEST(CheekHollowsTest, AFaceWithoutAMouthOrJawsHasNone) {
+TEST(CheekThicknessTest, AFaceWithoutAMouthOrJawsHasNone) {
   const OpenedPatient& p = opened_patient();
   auto stretched = p.rest;
   for (auto& at : stretched) at.z() *= 1.4f;
   const auto before = stretched;
-  const CheekHollows no_rim(p.rest, p.normals, {}, p.parts);
-  const CheekHollows no_jaws(p.rest, p.normals, p.prepared.lining()->rim, {});
+  const CheekThickness no_rim(p.rest, p.normals, {}, p.parts);
+  const CheekThickness no_jaws(p.rest, p.normals, p.prepared.lining()->rim, {});
   EXPECT_TRUE(no_rim.apply(stretched).empty());
   EXPECT_TRUE(no_jaws.apply(stretched).empty());
   EXPECT_EQ(stretched, before);
-  EXPECT_FALSE(hollows().apply(stretched).empty());
+  EXPECT_FALSE(cheeks().apply(stretched).empty());
 }
 
-TEST(CheekHollowsTest, OpenedCheeksSinkInBesideTheCornersAndDeeperWithTheOpening) {
+TEST(CheekThicknessTest, OpenedCheeksSinkInBesideTheCornersAndDeeperWithTheOpening) {
   float first = 0, before = 0;
   for (const char* words : {"open 15", "open 30", "open 40"}) {
     const auto smooth = opened_patient().drawn(opened_patient().frame(words));
     auto sunken = smooth;
-    hollows().apply(sunken);
+    cheeks().apply(sunken);
     const float left = deepest(smooth, sunken, 1), right = deepest(smooth, sunken, -1);
     EXPECT_NEAR(left, right, 0.3f) << words;
     RecordProperty(words, std::to_string(left));
@@ -74,11 +74,12 @@ TEST(CheekHollowsTest, OpenedCheeksSinkInBesideTheCornersAndDeeperWithTheOpening
   EXPECT_LT(before, 5);
 }
 
-TEST(CheekHollowsTest, HollowsEndWithoutAStep) {
-  const auto smooth = opened_patient().drawn(opened_patient().frame("open 40"));
+/// Largest step from an undisplaced vertex to its neighbour, over their distance.
+float step_at_end(const std::string& words) {
+  const auto smooth = opened_patient().drawn(opened_patient().frame(words));
   auto sunken = smooth;
-  hollows().apply(sunken);
-  float step = 0;  // over the distance of an undisplaced vertex and its neighbour
+  cheeks().apply(sunken);
+  float step = 0;
   for (const auto& t : opened_patient().face->mesh.triangles)
     for (int k = 0; k < 3; ++k) {
       const auto a = static_cast<std::size_t>(t[k]), b = static_cast<std::size_t>(t[(k + 1) % 3]);
@@ -86,16 +87,54 @@ TEST(CheekHollowsTest, HollowsEndWithoutAStep) {
       if (sunken[a] == smooth[a] && apart > 0.1f)
         step = std::max(step, (sunken[b] - smooth[b]).norm() / apart);
     }
-  RecordProperty("step", std::to_string(step));
-  EXPECT_GT(step, 0);
-  EXPECT_LT(step, 0.1f);
+  return step;
 }
 
-TEST(CheekHollowsTest, SunkenCheeksStayClearOfJawsAndTeeth) {
+TEST(CheekThicknessTest, HollowsAndBulgesEndWithoutAStep) {
+  for (const char* words : {"open 40", "smile 1"}) {
+    const float step = step_at_end(words);
+    RecordProperty(words, std::to_string(step));
+    EXPECT_GT(step, 0) << words;
+    EXPECT_LT(step, 0.1f) << words;
+  }
+}
+
+TEST(CheekThicknessTest, SmilingCheeksBulgeBelowTheEyesAndMoreWithTheSmile) {
+  const OpenedPatient& p = opened_patient();
+  float before = 0;
+  for (const char* words : {"smile 0.5", "smile 1"}) {
+    const auto smooth = opened_patient().drawn(opened_patient().frame(words));
+    auto bulged = smooth;
+    EXPECT_TRUE(cheeks().apply(bulged).empty()) << words;  // nothing gets darker
+    const float left = deepest(smooth, bulged, 1), right = deepest(smooth, bulged, -1);
+    RecordProperty(words, std::to_string(left));
+    EXPECT_NEAR(left, right, 0.4f) << words;
+    EXPECT_GT(left, 1.5f * before) << words;
+    before = left;
+    for (std::size_t v = 0; v < smooth.size(); ++v) {
+      const Vector3f moved = bulged[v] - smooth[v];
+      if (moved.norm() < 0.5f * left) continue;
+      EXPECT_GT(moved.dot(p.normals[v]), 0) << p.rest[v].transpose();
+      EXPECT_GT(p.rest[v].z(), p.corner(1).z() + 8) << p.rest[v].transpose();
+    }
+  }
+  EXPECT_GT(before, 1.5f);
+  EXPECT_LT(before, 4);
+}
+
+TEST(CheekThicknessTest, ASmileOfOneSideBulgesThatCheekAlone) {
+  const auto smooth = opened_patient().drawn(opened_patient().frame("smile 1 left"));
+  auto bulged = smooth;
+  cheeks().apply(bulged);
+  EXPECT_GT(deepest(smooth, bulged, 1), 1);
+  EXPECT_EQ(deepest(smooth, bulged, -1), 0);
+}
+
+TEST(CheekThicknessTest, SunkenCheeksStayClearOfJawsAndTeeth) {
   const FrameState frame = opened_patient().frame("open 40");
   const auto smooth = opened_patient().drawn(frame);
   auto sunken = smooth;
-  hollows().apply(sunken);
+  cheeks().apply(sunken);
   std::size_t tested = 0;
   double nearest = 1e9;
   for (const Part* part : opened_patient().parts) {
