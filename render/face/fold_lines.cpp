@@ -142,9 +142,9 @@ class FrontView {
 };
 
 /// A smooth curve through positions in front view, laid on the skin. side: of the bulge, as the
-/// sign of its direction across the curve.
+/// sign of its direction across the curve. begins: fraction of the depth at the first knot.
 std::vector<FoldLine::Sample> laid(const FrontView& face, std::span<const Vector2f> knots,
-                                   float side) {
+                                   float side, float begins) {
   std::vector<Vector2f> curve;
   for (std::size_t k = 0; k + 1 < knots.size(); ++k) {
     const Vector2f &a = knots[k], &b = knots[k + 1];
@@ -168,7 +168,8 @@ std::vector<FoldLine::Sample> laid(const FrontView& face, std::span<const Vector
     const Vector3f along = samples[std::min(i + 1, n - 1)].point - samples[i > 0 ? i - 1 : 0].point;
     samples[i].across = (side * samples[i].normal.cross(along)).normalized();
     const float t = static_cast<float>(i) / static_cast<float>(n - 1), ends = 4 * t * (1 - t);
-    samples[i].fraction = std::sqrt(std::max(ends, 0.f)) * std::min(1.f, 2 * ends);
+    const float fraction = std::sqrt(std::max(ends, 0.f)) * std::min(1.f, 2 * ends);
+    samples[i].fraction = t < 0.5f ? begins + (1 - begins) * fraction : fraction;
   }
   return samples;
 }
@@ -181,9 +182,10 @@ std::vector<FoldLine> find_fold_lines(std::span<const Vector3f> rest,
   if (rim.empty()) return lines;
   const FrontView face(rest, normals, rim);
   const float unit = face.width() / adult_mouth_mm;
-  const auto add = [&](std::span<const Vector2f> knots, float side, const FoldLine& like) {
+  const auto add = [&](std::span<const Vector2f> knots, float side, const FoldLine& like,
+                       float begins = 0) {
     FoldLine line = like;
-    line.samples = laid(face, knots, side);
+    line.samples = laid(face, knots, side, begins);
     for (float* length : {&line.gauge_mm, &line.far_mm, &line.limit_mm, &line.groove_mm})
       *length *= unit;
     if (!line.samples.empty()) lines.push_back(std::move(line));
@@ -204,7 +206,8 @@ std::vector<FoldLine> find_fold_lines(std::span<const Vector3f> rest,
            .gain = 0.9f,
            .limit_mm = 2.5f,
            .groove_mm = 2.2f,
-           .bulge = 0.9f});
+           .bulge = 0.9f},
+          0.55f);
     }
     add(std::array{beside(3.5f, 5), beside(4.5f, 0), beside(4, -6)}, s,
         {.gauge_mm = 3.5f, .gain = 0.7f, .limit_mm = 0.8f, .groove_mm = 1.2f, .bulge = 0.4f});

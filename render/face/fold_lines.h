@@ -12,7 +12,7 @@ struct FoldLine {
   struct Sample {
     Eigen::Vector3f point, normal;  // on the skin; unit
     Eigen::Vector3f across;         // unit, in the skin, towards the side that bulges
-    float fraction = 1;             // of the depth: 0 at the ends
+    float fraction = 1;             // of the depth; 0 at ends in even skin
   };
   std::vector<Sample> samples = {};
   float gauge_mm = 6;   // the surplus of skin is measured so far to either side,

@@ -69,10 +69,12 @@ SkinFolds::SkinFolds(std::span<const Vector3f> rest, std::span<const Vector3f> n
       const Vector3f& p = rest[static_cast<std::size_t>(v)];
       float least = std::numeric_limits<float>::infinity();
       Member member{v, number, 0, 0, 0};
+      float beyond = 0;  // the line's ends, over the half width of the groove
       for (std::size_t i = 0; i + 1 < n; ++i) {
         const auto &a = line.samples[i], &b = line.samples[i + 1];
         const Vector3f along = b.point - a.point;
-        const float t = std::clamp((p - a.point).dot(along) / along.squaredNorm(), 0.f, 1.f);
+        const float at = (p - a.point).dot(along) / along.squaredNorm(),
+                    t = std::clamp(at, 0.f, 1.f);
         const Vector3f off = p - a.point - t * along;
         if (off.norm() >= least) continue;
         least = off.norm();
@@ -81,7 +83,11 @@ SkinFolds::SkinFolds(std::span<const Vector3f> rest, std::span<const Vector3f> n
         member.along = static_cast<float>(i) + t;
         member.height = std::abs(x) < reach ? profile(x, line.bulge) : 0;
         member.dark = std::exp(-x * x);
+        beyond = std::abs(at - t) * along.norm() / line.groove_mm;
       }
+      const float ends = std::exp(-beyond * beyond);
+      member.height *= ends;
+      member.dark *= ends;
       if (std::abs(member.height) < 1e-3f) continue;
       used[static_cast<std::size_t>(v)] = 0;
       members_.push_back(member);

@@ -88,6 +88,20 @@ TEST(SkinFoldsTest, ASideThatSmilesFoldsBesideItsCornerAndDeeperWithTheSmile) {
   EXPECT_GT(before, 0.8);
 }
 
+TEST(SkinFoldsTest, NasolabialFoldsBeginAtTheAlaAndEndInEvenSkin) {
+  const FoldedHead head;
+  const auto lining = line_mouth(head.parts);
+  ASSERT_TRUE(lining);
+  float top = -1e9f;
+  for (const FoldLine& line : find_fold_lines(head.rest, head.normals, lining->rim)) {
+    EXPECT_EQ(line.samples.back().fraction, 0);
+    if (line.far_mm == 0) continue;  // not nasolabial
+    EXPECT_GT(line.samples.front().fraction, 0.5f);
+    top = std::max(top, line.samples.front().point.z());
+  }
+  EXPECT_GT(top, 20);  // beside the nose
+}
+
 TEST(SkinFoldsTest, AFaceWithoutAMouthHasNone) {
   const FoldedHead head;
   const SkinFolds none(head.rest, head.normals, head.parts[0].mesh.triangles, {});
