@@ -83,7 +83,8 @@ SkinFolds::SkinFolds(std::span<const Vector3f> rest, std::span<const Vector3f> n
         member.along = static_cast<float>(i) + t;
         member.height = std::abs(x) < reach ? profile(x, line.bulge) : 0;
         member.dark = std::exp(-x * x);
-        beyond = std::abs(at - t) * along.norm() / line.groove_mm;
+        const bool before = i == 0 && at < 0, after = i + 2 == n && at > 1;
+        beyond = before || after ? std::abs(at - t) * along.norm() / line.groove_mm : 0;
       }
       const float ends = std::exp(-beyond * beyond);
       member.height *= ends;

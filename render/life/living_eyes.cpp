@@ -109,20 +109,24 @@ LivingEyes::LivingEyes(const TriMesh& mesh) {
       on_[e].insert(on_[e].end(), piece.begin(), piece.end());
   }
   for (auto& piece : pieces_of(mesh, parted.lashes)) {
-    const Eyeball& ball = eyeballs_[nearest(place(piece.front()))];
+    const std::size_t eyeball = nearest(place(piece.front()));
+    const Eyeball& ball = eyeballs_[eyeball];
     const int root = *std::min_element(piece.begin(), piece.end(), [&](int a, int b) {
       return (place(a) - ball.centre).norm() < (place(b) - ball.centre).norm();
     });
-    lashes_.push_back({std::move(piece), place(root), -1});
+    lashes_.push_back({std::move(piece), place(root), eyeball});
   }
 }
 
-void LivingEyes::grow_from(std::span<const UpperLid> lids) {
+void LivingEyes::grow_from(std::span<const UpperLid> upper, std::span<const LowerLid> lower) {
   for (Lash& lash : lashes_)
-    for (std::size_t i = 0; i < lids.size(); ++i) {
-      const Eyeball& ball = lids[i].eyeball();
-      if ((lash.root - ball.centre).norm() < 1.5f * ball.radius && lids[i].is_above(lash.root))
-        lash.lid = static_cast<int>(i);
+    for (std::size_t i = 0; i < upper.size(); ++i) {
+      const Eyeball& ball = upper[i].eyeball();
+      if ((lash.root - ball.centre).norm() >= 1.5f * ball.radius) continue;
+      const bool above = upper[i].is_above(lash.root);
+      if (!above && !lower[i].grows(lash.root)) continue;
+      lash.lid = static_cast<int>(i);
+      lash.upper = above;
     }
 }
 
@@ -138,8 +142,8 @@ Vector3f LivingEyes::gaze_of(std::size_t eyeball, const LifeSigns& signs) const 
       .cast<float>();
 }
 
-void LivingEyes::move(const LifeSigns& signs, std::span<const UpperLid> lids,
-                      std::span<Vector3f> places, std::span<Vector3f> normals) const {
+void LivingEyes::move(const LifeSigns& signs, std::span<Vector3f> places,
+                      std::span<Vector3f> normals) const {
   for (std::size_t e = 0; signs.alive && e < eyeballs_.size(); ++e) {
     const Eyeball& ball = eyeballs_[e];
     const Eigen::Matrix3f R =
@@ -161,13 +165,17 @@ void LivingEyes::move(const LifeSigns& signs, std::span<const UpperLid> lids,
       normals[static_cast<std::size_t>(v)] = R * normals[static_cast<std::size_t>(v)];
     }
   }
+}
+
+void LivingEyes::turn_lashes(const std::function<Eigen::Matrix3f(const Lash&)>& turn,
+                             std::span<Vector3f> places, std::span<Vector3f> normals) const {
   for (const Lash& lash : lashes_) {
     if (lash.lid < 0) continue;
-    const UpperLid& lid = lids[static_cast<std::size_t>(lash.lid)];
-    const Eigen::Matrix3f R = lid.turn_at(lash.root, lid.lowered(signs));
+    const Eigen::Matrix3f R = turn(lash);
+    const Vector3f& centre = eyeballs_[lash.eyeball].centre;
     for (const int v : lash.vertices) {
       Vector3f& p = places[static_cast<std::size_t>(v)];
-      p = lid.eyeball().centre + R * (p - lid.eyeball().centre);
+      p = centre + R * (p - centre);
       normals[static_cast<std::size_t>(v)] = R * normals[static_cast<std::size_t>(v)];
     }
   }

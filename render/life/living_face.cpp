@@ -33,7 +33,7 @@ LivingFace::LivingFace(std::span<const Part> parts, std::span<const Vector3f> re
   }
   find_lids(rest, triangles);
   for (auto& eyes : eyes_)
-    if (eyes) eyes->grow_from(lids_);
+    if (eyes) eyes->grow_from(lids_, lower_lids_);
   find_neck(parts, rest);
   if (nose_tip) find_nostrils(rest, nose_tip->cast<float>());
 }
@@ -57,6 +57,7 @@ void LivingFace::find_lids(std::span<const Vector3f> rest,
       found.eyeball = true;
       if (auto lid = UpperLid::find(rest, triangles, ball, side)) {
         found.lid = true;
+        lower_lids_.emplace_back(*lid, rest);
         lids_.push_back(std::move(*lid));
         lid_eyes_.emplace_back(i, e);
       }
@@ -98,6 +99,17 @@ void LivingFace::find_nostrils(std::span<const Vector3f> rest, const Vector3f& t
     }
 }
 
+std::vector<float> LivingFace::raise_lids(const LifeSigns& signs,
+                                          std::span<Vector3f> places) const {
+  std::vector<float> raised;
+  for (std::size_t i = 0; i < lower_lids_.size(); ++i) {
+    const auto [part, eyeball] = lid_eyes_[i];
+    raised.push_back(lower_lids_[i].raised(places));
+    lower_lids_[i].move(raised.back(), eyes_[part]->gaze_of(eyeball, signs), places);
+  }
+  return raised;
+}
+
 void LivingFace::move_lids(const LifeSigns& signs, std::span<Vector3f> places) const {
   for (std::size_t i = 0; i < lids_.size(); ++i) {
     const auto [part, eyeball] = lid_eyes_[i];
@@ -126,9 +138,17 @@ void LivingFace::breathe(const Life& life, const LifeSigns& signs,
     places[static_cast<std::size_t>(member.vertex)] += breath * member.breathes;
 }
 
-void LivingFace::move_eyes(std::size_t part, const LifeSigns& signs, std::span<Vector3f> places,
-                           std::span<Vector3f> normals) const {
-  if (has_eyes(part)) eyes_[part]->move(signs, lids_, places, normals);
+void LivingFace::move_eyes(std::size_t part, const LifeSigns& signs, std::span<const float> raised,
+                           std::span<Vector3f> places, std::span<Vector3f> normals) const {
+  if (!has_eyes(part)) return;
+  eyes_[part]->move(signs, places, normals);
+  eyes_[part]->turn_lashes(
+      [&](const LivingEyes::Lash& lash) -> Eigen::Matrix3f {
+        const auto lid = static_cast<std::size_t>(lash.lid);
+        if (lash.upper) return lids_[lid].turn_at(lash.root, lids_[lid].lowered(signs));
+        return lower_lids_[lid].turn_at(lash.root, lid < raised.size() ? raised[lid] : 0);
+      },
+      places, normals);
 }
 
 std::string LivingFace::lids_shortfall() const {

@@ -9,6 +9,7 @@
 
 #include "render/life/life_signs.h"
 #include "render/life/living_eyes.h"
+#include "render/life/lower_lid.h"
 #include "render/life/upper_lid.h"
 #include "sim/frame/part.h"
 
@@ -25,13 +26,16 @@ class LivingFace {
   /// Moves the present vertices of the drawn face. Returns the shade of the lids' creases.
   std::vector<SkinFolds::Shade> move_face(const Life& life, const LifeSigns& signs,
                                           std::span<Eigen::Vector3f> places) const;
+  /// Raises the lower lids with the cheeks below them: before the upper lids, which meet them.
+  /// Returns the angle of each, rad, for move_eyes; all 0 where no cheek is raised.
+  std::vector<float> raise_lids(const LifeSigns& signs, std::span<Eigen::Vector3f> places) const;
   /// Moves the vertices of the upper lids alone.
   void move_lids(const LifeSigns& signs, std::span<Eigen::Vector3f> places) const;
   /// Whether move_eyes moves any vertex of the part with this number.
   bool has_eyes(std::size_t part) const { return part < eyes_.size() && eyes_[part].has_value(); }
-  /// Moves vertices and normals of a part, given at rest.
-  void move_eyes(std::size_t part, const LifeSigns& signs, std::span<Eigen::Vector3f> places,
-                 std::span<Eigen::Vector3f> normals) const;
+  /// Moves vertices and normals of a part, given at rest. raised: of the lower lids; empty: none.
+  void move_eyes(std::size_t part, const LifeSigns& signs, std::span<const float> raised,
+                 std::span<Eigen::Vector3f> places, std::span<Eigen::Vector3f> normals) const;
 
   /// What of it the patient lacks, as text; empty for nothing.
   std::string shortfall() const;
@@ -57,6 +61,7 @@ class LivingFace {
 
   std::vector<std::optional<LivingEyes>> eyes_;  // by part
   std::vector<UpperLid> lids_;
+  std::vector<LowerLid> lower_lids_;                           // of the same eyes
   std::vector<std::pair<std::size_t, std::size_t>> lid_eyes_;  // part and eyeball of each lid
   std::vector<Member> neck_, nostrils_;
   EyeParts left_, right_;

@@ -305,7 +305,6 @@ double UpperLid::lowered(const LifeSigns& signs) const {
 
 void UpperLid::move(double lowered, const Vector3f& gaze, std::span<Vector3f> places) const {
   if (lowered == 0) return;
-  const Vector3f axis = axis_.cast<float>(), ahead = ahead_.cast<float>(), up = up_.cast<float>();
   const std::vector<float> wider = widening(places);
   const auto widened = [&](float along) {
     const float at = std::clamp(along / static_cast<float>(measured_every) + measured / 2, 0.f,
@@ -318,20 +317,23 @@ void UpperLid::move(double lowered, const Vector3f& gaze, std::span<Vector3f> pl
   for (const float reach : eyeball_.profile) farthest = std::max(farthest, reach);
   for (const auto& [vertex, turn, share, along, crease, raised] : members_) {
     Vector3f& p = places[static_cast<std::size_t>(vertex)];
-    const Vector3f v = p - eyeball_.centre;
     const float angle = -static_cast<float>(lowered) * (turn + share * widened(along));
-    const float c = std::cos(angle), s = std::sin(angle);
-    const float x = v.dot(ahead), z = v.dot(up);
-    Vector3f there = v.dot(axis) * axis + (c * x - s * z) * ahead + (s * x + c * z) * up;
-    const Vector3f direction = there.normalized();
     // A thin lid has no room for the crease.
-    const float room = std::max(0.f, there.norm() - farthest - clear_mm);
-    const float far = there.norm() + creased * std::max(raised, -room / 2);
-    there = far * direction;
-    const float least = eyeball_.reach(direction, gaze) + clear_mm;
-    if (far < least) there = least * direction;
-    p = eyeball_.centre + there;
+    const float room = std::max(0.f, (p - eyeball_.centre).norm() - farthest - clear_mm);
+    p = slid(p, angle, gaze, creased * std::max(raised, -room / 2));
   }
+}
+
+Vector3f UpperLid::slid(const Vector3f& p, float angle, const Vector3f& gaze, float off) const {
+  const Vector3f axis = axis_.cast<float>(), ahead = ahead_.cast<float>(), up = up_.cast<float>();
+  const Vector3f v = p - eyeball_.centre;
+  const float c = std::cos(angle), s = std::sin(angle);
+  const float x = v.dot(ahead), z = v.dot(up);
+  Vector3f there = v.dot(axis) * axis + (c * x - s * z) * ahead + (s * x + c * z) * up;
+  const Vector3f direction = there.normalized();
+  const float far = there.norm() + off;
+  there = std::max(far, eyeball_.reach(direction, gaze) + clear_mm) * direction;
+  return eyeball_.centre + there;
 }
 
 void UpperLid::shade(double lowered, std::vector<SkinFolds::Shade>& shades) const {
@@ -348,10 +350,12 @@ bool UpperLid::is_above(const Vector3f& point) const {
 }
 
 Eigen::Matrix3f UpperLid::turn_at(const Vector3f& point, double lowered) const {
-  const double angle = lowered * way_at(place_of(point.cast<double>()).along);
-  // Down is from up_ to ahead_.
-  const Vector3d about = up_.cross(ahead_);
-  return Eigen::AngleAxisd(angle, about).toRotationMatrix().cast<float>();
+  return turned(-lowered * way_at(place_of(point.cast<double>()).along));
+}
+
+Eigen::Matrix3f UpperLid::turned(double angle) const {
+  // Up is from ahead_ to up_.
+  return Eigen::AngleAxisd(angle, ahead_.cross(up_)).toRotationMatrix().cast<float>();
 }
 
 }  // namespace condyle

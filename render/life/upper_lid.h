@@ -40,6 +40,27 @@ class UpperLid {
 
   const Eyeball& eyeball() const { return eyeball_; }
 
+  /// A point seen from the eyeball's centre: mm `along` the axis and `away` from it, and rad `up`
+  /// about the axis from straight ahead.
+  struct Place {
+    double along, away, up;
+  };
+  /// The opening at one place along the axis, rad, and the distance of its edges from the axis, mm.
+  struct Gap {
+    double bottom = 0, top = 0, away = 0;
+  };
+  Place place_of(const Eigen::Vector3d& p) const;
+  /// The opening at rest; empty beyond the canthi.
+  Gap gap_at(double along) const;
+  /// Its largest height, rad.
+  double widest() const { return widest_; }
+  /// A point that slides on the eyeball by an angle upward, rad, then rises by `off` mm, and does
+  /// not enter the eyeball. gaze: unit.
+  Eigen::Vector3f slid(const Eigen::Vector3f& p, float angle, const Eigen::Vector3f& gaze,
+                       float off = 0) const;
+  /// Rotation upward about the axis, rad.
+  Eigen::Matrix3f turned(double angle) const;
+
   /// Fraction of the way to the lower lid by the closure of this side. A living lid follows the
   /// gaze, and is lowered a little where it shows all of the iris: the eye would stare.
   double lowered(const LifeSigns& signs) const;
@@ -56,15 +77,6 @@ class UpperLid {
   Eigen::Matrix3f turn_at(const Eigen::Vector3f& point, double lowered) const;
 
  private:
-  /// A point seen from the eyeball's centre: mm `along` the axis and `away` from it, and rad `up`
-  /// about the axis from straight ahead.
-  struct Place {
-    double along, away, up;
-  };
-  /// The opening at one place along the axis, rad, and the distance of its edges from the axis, mm.
-  struct Gap {
-    double bottom = 0, top = 0, away = 0;
-  };
   struct Member {
     int vertex;
     float turn;   // rad, when the lid is closed
@@ -78,9 +90,7 @@ class UpperLid {
     double along, up;
   };
   UpperLid(const Eyeball& eyeball, FaceSide side) : eyeball_(eyeball), side_(side) {}
-  Place place_of(const Eigen::Vector3d& p) const;
   Eigen::Vector3d point_at(const Place& place) const;
-  Gap gap_at(double along) const;
   double way_at(double along) const;      // of the edge down to the lower lid, rad
   double spread_way(double along) const;  // the same with that of its neighbours
   void scan(const TriMesh& near);

@@ -65,7 +65,7 @@ struct Drawable {
 
   /// Changes of a face's shape in pictures alone.
   struct FaceLook {
-    bool folded = true;  // with folds of its skin, thickness of its cheeks, pad of its chin
+    bool folded = true;  // with folds of its skin, thickness of its cheeks, pad under its chin
     // Moves its vertices and returns the shade of creases.
     std::function<std::vector<SkinFolds::Shade>(std::span<Eigen::Vector3f>)> alive = {};
     // Moves the places, at rest, that the fine relief of its skin is tied to.

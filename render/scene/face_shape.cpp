@@ -81,27 +81,37 @@ void FaceShape::send(std::span<const Part> parts, std::span<Drawable> drawables,
   if (sent_ ? *sent_ == look : places_.empty() && !look.signs) return;
   const TriMesh& rest = face->part->mesh;
   Drawable::FaceLook drawn{.folded = look.folds};
-  if (look.signs) {
-    if (!living_ || (look.life && nose_tip_ != look.life->nose_tip)) {
-      nose_tip_ = look.life ? look.life->nose_tip : std::nullopt;
-      living_.emplace(parts, float_positions(rest), face->triangles(), nose_tip_);
-    }
+  const bool moves_lids = look.signs.has_value(), raises = look.folds && !places_.empty();
+  const LifeSigns signs = look.signs.value_or(LifeSigns{.alive = false});
+  std::vector<float> raised;
+  if (moves_lids || raises) {
+    const LivingFace& own = living(parts, *face, look);
     drawn.alive = [&](std::span<Eigen::Vector3f> places) {
-      return living_->move_face(look.life.value_or(Life{}), *look.signs, places);
-    };
-    // The skin of a closed lid is unfolded, not drawn out to streaks.
-    drawn.relief = [&](std::span<Eigen::Vector3f> places) {
-      living_->move_lids(*look.signs, places);
+      if (raises) raised = own.raise_lids(signs, places);
+      return own.move_face(look.life.value_or(Life{}), signs, places);
     };
   }
+  if (moves_lids)
+    // The skin of a closed lid is unfolded, not drawn out to streaks.
+    drawn.relief = [&](std::span<Eigen::Vector3f> places) { living_->move_lids(signs, places); };
   face->move_face(places_.empty() ? float_positions(rest) : places_, drawn, normals_);
-  send_eyes(drawables, look.signs ? &*look.signs : nullptr);
+  const bool moves_eyes = moves_lids || std::any_of(raised.begin(), raised.end(),
+                                                    [](float angle) { return angle > 0; });
+  if (moves_eyes || eyes_moved_) send_eyes(drawables, signs, raised);
+  eyes_moved_ = moves_eyes;
   sent_ = look;
 }
 
-/// signs: null at rest.
-void FaceShape::send_eyes(std::span<Drawable> drawables, const LifeSigns* signs) {
-  if (!signs && !eyes_moved_) return;
+LivingFace& FaceShape::living(std::span<const Part> parts, const Drawable& face, const Look& look) {
+  if (!living_ || (look.life && nose_tip_ != look.life->nose_tip)) {
+    nose_tip_ = look.life ? look.life->nose_tip : std::nullopt;
+    living_.emplace(parts, float_positions(face.part->mesh), face.triangles(), nose_tip_);
+  }
+  return *living_;
+}
+
+void FaceShape::send_eyes(std::span<Drawable> drawables, const LifeSigns& signs,
+                          std::span<const float> raised) {
   ++eyes_number_;
   for (std::size_t i = 0; i < drawables.size(); ++i) {
     if (!living_->has_eyes(i)) continue;
@@ -109,10 +119,9 @@ void FaceShape::send_eyes(std::span<Drawable> drawables, const LifeSigns* signs)
     auto& [places, normals] = eyes_[i];
     places = float_positions(mesh);
     vertex_normals(places, mesh.triangles, normals);
-    if (signs) living_->move_eyes(i, *signs, places, normals);
+    living_->move_eyes(i, signs, raised, places, normals);
     drawables[i].mesh.send_shape(places, normals);
   }
-  eyes_moved_ = signs != nullptr;
 }
 
 void FaceShape::send_eyes_again(std::size_t drawable, GpuMesh& mesh, long& sent) const {

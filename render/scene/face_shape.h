@@ -57,11 +57,13 @@ class FaceShape {
     std::optional<LifeSigns> signs = {};  // none: eyes and lids as the face has them
     bool operator==(const Look&) const = default;
   };
-  void send_eyes(std::span<Drawable> drawables, const LifeSigns* signs);
+  LivingFace& living(std::span<const Part> parts, const Drawable& face, const Look& look);
+  void send_eyes(std::span<Drawable> drawables, const LifeSigns& signs,
+                 std::span<const float> raised);
 
   std::vector<Eigen::Vector3f> places_;      // empty: at rest
   std::optional<Look> sent_;                 // none: the places were not sent yet
-  std::optional<LivingFace> living_;         // from the first picture with life or closed lids on
+  std::optional<LivingFace> living_;         // from the first picture that needs it on
   std::optional<Eigen::Vector3d> nose_tip_;  // that it was made for
   struct EyesShape {
     std::vector<Eigen::Vector3f> places, normals;

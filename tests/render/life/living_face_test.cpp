@@ -8,6 +8,7 @@
 #include "engine/mesh/triangle_tree.h"
 #include "render/face/lashes.h"
 #include "sim/phantom/phantom.h"
+#include "tests/render/face/opened_patient.h"
 
 namespace condyle {
 namespace {
@@ -19,12 +20,6 @@ const Part& part_of(const Case& patient, Role role) {
   for (const Part& part : patient.parts)
     if (part.role == role) return part;
   throw std::runtime_error("the built-in patient lacks a part");
-}
-
-std::vector<Vector3f> floats(const TriMesh& mesh) {
-  std::vector<Vector3f> positions;
-  for (const auto& p : mesh.vertices) positions.push_back(p.cast<float>());
-  return positions;
 }
 
 class LivingPatient : public testing::Test {
@@ -56,7 +51,7 @@ class LivingPatient : public testing::Test {
     auto balls = floats(eyes_.mesh);
     std::vector<Vector3f> normals(balls.size(), Vector3f::UnitZ());
     for (std::size_t i = 0; i < patient().parts.size(); ++i)
-      if (&patient().parts[i] == &eyes_) living_.move_eyes(i, signs, balls, normals);
+      if (&patient().parts[i] == &eyes_) living_.move_eyes(i, signs, {}, balls, normals);
     TriMesh eyes{{}, part_lashes(eyes_.mesh).eyes, {}};
     for (const auto& p : balls) eyes.vertices.push_back(p.cast<double>());
     const TriangleTree skin_tree(skin), eye_tree(eyes);
@@ -110,7 +105,7 @@ TEST_F(LivingPatient, AnExpressionClosesTheEyesOfItsSidesAndMovesNothingElse) {
   auto eyes = eyes_at_rest;
   std::vector<Vector3f> normals(eyes.size(), Vector3f::UnitZ());
   for (std::size_t i = 0; i < patient().parts.size(); ++i)
-    if (&patient().parts[i] == &eyes_) living_.move_eyes(i, wink, eyes, normals);
+    if (&patient().parts[i] == &eyes_) living_.move_eyes(i, wink, {}, eyes, normals);
   const auto radii = lash_radii(eyes_.mesh);
   int lashes = 0;
   for (std::size_t v = 0; v < eyes.size(); ++v)

@@ -178,7 +178,7 @@ TEST(LivingEyesTest, BothEyesLookAtOnePoint) {
   std::vector<Vector3f> places, normals(both.vertices.size(), ahead);
   for (const auto& p : both.vertices) places.push_back(p.cast<float>());
   const auto rest = places;
-  eyes.move(signs, {}, places, normals);
+  eyes.move(signs, places, normals);
   for (std::size_t v = 0; v < places.size(); ++v) {
     const Vector3f c = v < first ? l : r;
     EXPECT_NEAR((places[v] - c).norm(), (rest[v] - c).norm(), 1e-3f);
