@@ -6,9 +6,10 @@
 namespace condyle {
 
 /// When the preconditioner is refactored, in iterations: fixed, so that results do not depend on
-/// timing. A factorisation costs as much as a dozen iterations. Far from the minimum a factor is
-/// useful for few iterations, because the set of compressed springs changes with each; near it the
-/// exact Hessian, where positive definite, is useful for many.
+/// timing. A factorisation costs as much as a dozen iterations, and several dozen in large meshes.
+/// Far from the minimum a factor is useful for few iterations, because the set of compressed
+/// springs changes with each; near it the exact Hessian, where positive definite, is useful for
+/// many.
 struct RefactorPolicy {
   int first = 1;     // with the given factor
   int far = 1;       // number of factors computed far from the minimum
@@ -22,6 +23,9 @@ struct RefactorPolicy {
 /// For meshes of ten thousand nodes and more.
 constexpr RefactorPolicy large_mesh_policy{
     .first = 1, .far = 2, .each_far = 1, .later = 8, .most = 20, .confirm = true};
+/// For meshes of 40,000 nodes and more.
+constexpr RefactorPolicy largest_mesh_policy{
+    .first = 1, .far = 2, .each_far = 2, .later = 20, .most = 60, .confirm = true};
 
 /// Minimisation far from the state of the given factor: newly compressed springs and rotated tissue
 /// require refactorisation at intermediate states.

@@ -49,7 +49,7 @@ Json tolerance_rows(const TissueTarget& target, int repeats) {
 
 Json static_prediction(int nodes, int threads) {
   MinimizeSettings settings;
-  settings.tolerance_mm = 3e-3;
+  settings.tolerance_mm = 0.03;  // leaves less than target_mm
   settings.max_step_mm = bench_step_mm;
   const Stopwatch whole;
   const SyntheticSet set = make_synthetic_set(size_of_nodes(nodes));
@@ -60,20 +60,23 @@ Json static_prediction(int nodes, int threads) {
   const double factor_ms = making.wall_ms();
   SpringPrismEnergy energy(set.mesh, loads, threads);
   Nodes x = set.rest;
-  const MinimizeResult result = minimize_with_refactorization(set.mesh, loads, energy, factor,
-                                                              settings, x, large_mesh_policy);
+  const MinimizeResult result =
+      minimize_with_refactorization(set.mesh, loads, energy, factor, settings, x,
+                                    nodes < 40000 ? large_mesh_policy : largest_mesh_policy);
   const double wall_ms = whole.wall_ms(), cpu_ms = whole.cpu_ms();
   if (!result.converged())
     throw MachineError("bench: the prediction at " + std::to_string(nodes) +
                        " nodes did not converge");
   Nodes reference = x;
-  settings.tolerance_mm *= 0.1;
+  settings.tolerance_mm *= 0.01;
   const HessianFactor near = factor.anew(set.mesh, loads, x, threads);
   const MinimizeResult tight = minimize_with_refactorization(
       set.mesh, loads, energy, near, settings, reference, {.first = 12, .far = 0});
+  const double error_mm = largest_distance(x, reference);
+  const Json shown_ms = tight.converged() && error_mm <= target_mm ? Json(wall_ms) : Json();
   return {{"name", "tissue.static"},
-          {"median", wall_ms},
-          {"p95", wall_ms},
+          {"median", shown_ms},
+          {"p95", shown_ms},
           {"unit", "ms"},
           {"cpu_median", cpu_ms},
           {"nodes", set.mesh.node_count},
@@ -83,7 +86,7 @@ Json static_prediction(int nodes, int threads) {
           {"factor_ms", factor_ms},
           {"solve_ms", wall_ms - build_ms - factor_ms},
           {"iterations", result.iterations},
-          {"error_mm", largest_distance(x, reference)},
+          {"error_mm", error_mm},
           {"energy_error", (result.energy - tight.energy) / tight.energy},
           {"converged", tight.converged()}};
 }
