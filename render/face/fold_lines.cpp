@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
 namespace condyle {
 namespace {
@@ -212,6 +213,19 @@ std::vector<FoldLine> find_fold_lines(std::span<const Vector3f> rest,
     add(std::array{beside(3.5f, 5), beside(4.5f, 0), beside(4, -6)}, s,
         {.gauge_mm = 3.5f, .gain = 0.7f, .limit_mm = 0.8f, .groove_mm = 1.2f, .bulge = 0.4f});
   }
+  // From the red of the lips, outward from the middle and long.
+  const Vector2f stomion(face.middle().x(), face.middle().z());
+  for (const auto& [out, length] : {std::pair{5.f, 8.f}, {9.5f, 6.f}, {14.5f, 8.f}, {20.f, 6.f}})
+    for (const float side : {1.f, -1.f})
+      for (const float up : {1.f, -1.f}) {
+        const float red = 8 - 7 * out * out / 650;  // height of its border
+        const auto at = [&](float beside, float height) {
+          return Vector2f(stomion + unit * Vector2f(side * beside, up * height));
+        };
+        add(std::array{at(out, red), at(1.3f * out, red + length)}, 1,
+            {.gauge_mm = 2.5f, .gain = 0.9f, .limit_mm = 0.45f, .groove_mm = 1.2f, .bulge = 0.5f},
+            0.7f);
+      }
   if (const auto sulcus = face.mentolabial_point()) {
     const Vector2f at(sulcus->x(), sulcus->z());
     add(std::array{Vector2f(at - unit * Vector2f(15, 4)), at,

@@ -102,6 +102,25 @@ TEST(SkinFoldsTest, NasolabialFoldsBeginAtTheAlaAndEndInEvenSkin) {
   EXPECT_GT(top, 20);  // beside the nose
 }
 
+TEST(SkinFoldsTest, PursedLipsHaveLinesAroundThem) {
+  const FoldedHead head;
+  ASSERT_TRUE(head.folds);
+  std::vector<Vector3f> pursed = head.rest;
+  for (auto& p : pursed)
+    if (p.y() < 0) p.x() *= 1 - 0.2f * std::exp(-p.squaredNorm() / (60 * 60) * 0.1f);
+  std::vector<Vector3f> places = pursed;
+  EXPECT_FALSE(head.folds->apply(places).empty());
+  int above = 0, below = 0;
+  for (std::size_t v = 0; v < places.size(); ++v) {
+    const Vector3f& p = head.rest[v];
+    if ((places[v] - pursed[v]).norm() < 0.1f || std::abs(p.x()) > 20) continue;
+    above += p.z() > 4 && p.z() < 20;
+    below += p.z() < -4 && p.z() > -20;
+  }
+  EXPECT_GT(above, 15);
+  EXPECT_GT(below, 15);
+}
+
 TEST(SkinFoldsTest, AFaceWithoutAMouthHasNone) {
   const FoldedHead head;
   const SkinFolds none(head.rest, head.normals, head.parts[0].mesh.triangles, {});
