@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "engine/math/smooth_step.h"
 #include "render/face/lashes.h"
 #include "render/shaders/skin_detail.h"
 #include "render/shaders/skin_table.h"
@@ -229,8 +230,9 @@ GlProgram& Passes::begin(Programs& programs, const DrawItem& item, const Picture
   shadow_map_.bind_depths(4);
   glActiveTexture(GL_TEXTURE0);
   glBindTexture(GL_TEXTURE_2D, shadow_map_.texture());
-  // On skin like glass pores and shadows are hardly visible, and both take long to draw.
-  constexpr double glass_opacity = 0.5;
+  // On skin like glass pores and shadows are hardly visible, and both take long to draw; they come
+  // gradually.
+  constexpr double glass_opacity = 0.5, full_relief_opacity = 0.75;
   const bool glass = role == Role::face && item.opacity < glass_opacity;
   const auto& neck_cut = item.drawable->neck_cut;
   const bool vanishing = neck_cut && !mapped && !item.clipped && view.backdrop;
@@ -256,6 +258,8 @@ GlProgram& Passes::begin(Programs& programs, const DrawItem& item, const Picture
   program.set("shadow_scale", Eigen::Vector3f(view.shadow.topLeftCorner<3, 3>().rowwise().norm()));
   program.set("two_sided", item.drawable->closed || role == Role::face ? 0.f : 1.f);
   program.set("opacity", static_cast<float>(item.opacity));
+  program.set("relief", static_cast<float>(smooth_step((item.opacity - glass_opacity) /
+                                                       (full_relief_opacity - glass_opacity))));
   program.set("roughness", material.roughness);
   program.set("reflectance", material.reflectance);
   program.set("wrap", material.wrap);

@@ -295,6 +295,8 @@ bool beside_mouth() {
   return dot(off, off) < 1.0;
 }
 
+uniform float relief;  // 0 to 1: of pores, furrows and shadows, on skin that is seen through
+
 void main() {
   begin();
   vec3 v = normalize(to_eye);
@@ -311,6 +313,7 @@ void main() {
   vec4 coarse = smooth_skin ? vec4(0.0) : detail(rest_place.zxy, coarse_period, pixel_mm);
   vec3 bent = vec3(furrowed ? 1.2 * coarse.x : 0.0, 0.0, 0.0);
   vec4 fine = smooth_skin ? vec4(0.0) : detail(rest_place * cells + bent, fine_period, pixel_mm);
+  if (seen_through) coarse *= relief, fine *= relief;
   vec3 slope = mix(0.27 - 0.135 * gloss, 1.5 * gloss, furrows) * fine.xyz * cells
              + (0.12 - 0.06 * gloss) * coarse.xyz;
   vec3 n = normalize(smooth_normal - (slope - smooth_normal * dot(slope, smooth_normal)));
@@ -319,7 +322,7 @@ void main() {
   vec3 through = texture(skin_table, vec2(0.5 + 0.5 * dot(n, key_direction), traits.y)).rgb;
   vec2 seen = key_visibility(smooth_normal,
                              through.r > 0.01 || dot(shine_normal, key_direction) > 0.0);
-  float lit = seen.x;
+  float lit = seen_through ? mix(1.0, seen.x, relief) : seen.x;
   // Light that enters beside a shadow's edge emerges red inside it, about 2 mm farther.
   vec3 tint = mix(vec3(0.62, 1.0, 1.12), vec3(1.0), clamp(seen.y / 6.0, 0.0, 1.0));
   vec3 tinted = vec3(lit);

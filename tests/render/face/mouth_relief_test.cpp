@@ -46,6 +46,28 @@ TEST_F(LipPictures, FurrowsOfTheRedRunFromLipToLip) {
   EXPECT_GT(chin, 0.5);
 }
 
+// Skin like glass lacks furrows and shadows, which would appear at once.
+TEST_F(LipPictures, ReliefAndShadowsComeGraduallyAsTheSkinGetsOpaque) {
+  LipFace face;
+  Camera camera = front_camera(60);
+  camera.target = {0, -105, -50};
+  const auto at = [&](double opacity) {
+    auto settings = mask_settings(160);
+    settings.skin_opacity = opacity;
+    return face.renderer.picture(camera, settings);
+  };
+  const auto largest = [](const Image& a, const Image& b) {
+    int most = 0;
+    for (std::size_t i = 0; i < a.rgba.size(); ++i)
+      most = std::max(most, std::abs(a.rgba[i] - b.rgba[i]));
+    return most;
+  };
+  const int step = largest(at(0.4999), at(0.5001)), whole = largest(at(0.4999), at(0.75));
+  RecordProperty("step", step);
+  EXPECT_LE(step, 2);
+  EXPECT_GT(whole, 20);
+}
+
 TEST_F(MouthPictures, ATongueOfTheMouthsLiningHasPapillaeThatCoarsePicturesLack) {
   const OpenedPatient& p = opened_patient();
   auto parts = p.scene.patient.parts;
