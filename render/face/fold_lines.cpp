@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 #include <utility>
 
@@ -17,7 +18,7 @@ using Eigen::Vector3f;
 constexpr float adult_mouth_mm = 50;  // width for which lengths are given
 constexpr float spacing_mm = 2.5;     // of samples
 
-/// The face around the mouth in front view: x to the left, z up.
+/// The face from the chin to the forehead in front view: x to the left, z up.
 class FrontView {
  public:
   FrontView(std::span<const Vector3f> rest, std::span<const Vector3f> normals,
@@ -35,10 +36,12 @@ class FrontView {
     width_ = left_.x() - right_.x();
     for (std::size_t v = 0; v < rest.size(); ++v) {
       const Vector3f off = rest[v] - middle_;
-      if (std::abs(off.x()) < 1.2f * width_ && std::abs(off.z()) < 1.5f * width_ &&
-          off.y() < 1.2f * width_)
+      if (std::abs(off.x()) < 1.2f * width_ && off.z() > -1.5f * width_ &&
+          off.z() < 2.8f * width_ && off.y() < 1.2f * width_)
         near_.push_back(v);
     }
+    cell_ = 0.12f * width_;
+    for (const std::size_t v : near_) cells_[cell_of(rest[v].x(), rest[v].z())].push_back(v);
   }
 
   float width() const { return width_; }
@@ -86,14 +89,15 @@ class FrontView {
   std::optional<Vector3f> skin_at(const Vector2f& at) const {
     const float radius = 0.06f * width_, deep = 0.15f * width_;
     float front = std::numeric_limits<float>::infinity();
+    const auto around = near(at.x(), at.y());
     const auto inside = [&](std::size_t v) {
       return (Vector2f(rest_[v].x(), rest_[v].z()) - at).squaredNorm() < radius * radius;
     };
-    for (const std::size_t v : near_)
+    for (const std::size_t v : around)
       if (inside(v)) front = std::min(front, rest_[v].y());
     Vector3f sum = Vector3f::Zero();
     float weights = 0;
-    for (const std::size_t v : near_) {
+    for (const std::size_t v : around) {
       if (!inside(v) || rest_[v].y() > front + deep) continue;
       const float weight = 1 - (Vector2f(rest_[v].x(), rest_[v].z()) - at).norm() / radius + 1e-3f;
       sum += weight * rest_[v];
@@ -105,12 +109,25 @@ class FrontView {
 
   /// Mean normal around a position on the skin.
   Vector3f normal_at(const Vector3f& p) const {
-    const float radius = 0.12f * width_;
+    const float radius = cell_;
     Vector3f sum = Vector3f::Zero();
-    for (const std::size_t v : near_)
+    for (const std::size_t v : near(p.x(), p.z()))
       if ((rest_[v] - p).squaredNorm() < radius * radius && normals_[v].y() < 0.3f)
         sum += normals_[v];
     return sum.norm() > 0 ? Vector3f(sum.normalized()) : Vector3f(-Vector3f::UnitY());
+  }
+
+  /// The foremost point of the midline above the root of the nose.
+  std::optional<Vector3f> glabella(const Vector3f& tip) const {
+    const float step = 0.04f * width_, distinct = 0.01f * width_;
+    std::optional<Vector3f> root, above;
+    for (float up = 0.4f * width_; up < 1.7f * width_; up += step) {
+      const auto p = skin_at({middle_.x(), tip.z() + up});
+      if (!p) break;
+      if (!root || (!above && p->y() > root->y())) root = p;
+      if (root->y() - p->y() > distinct && (!above || p->y() < above->y())) above = p;
+    }
+    return above;
   }
 
   /// Where the midline is farthest behind the line from the lower lip to the chin.
@@ -136,8 +153,27 @@ class FrontView {
   }
 
  private:
+  using Cell = std::pair<int, int>;
+  Cell cell_of(float x, float z) const {
+    return {static_cast<int>(std::floor(x / cell_)), static_cast<int>(std::floor(z / cell_))};
+  }
+  /// All vertices within the edge of a cell, and others; ascending.
+  std::vector<std::size_t> near(float x, float z) const {
+    const Cell middle = cell_of(x, z);
+    std::vector<std::size_t> around;
+    for (int i = -1; i <= 1; ++i)
+      for (int k = -1; k <= 1; ++k)
+        if (const auto cell = cells_.find({middle.first + i, middle.second + k});
+            cell != cells_.end())
+          around.insert(around.end(), cell->second.begin(), cell->second.end());
+    std::sort(around.begin(), around.end());
+    return around;
+  }
+
   std::span<const Vector3f> rest_, normals_;
   std::vector<std::size_t> near_;
+  float cell_ = 0;  // edge of a cell, at least the radius of what is asked
+  std::map<Cell, std::vector<std::size_t>> cells_;
   Vector3f right_, left_, middle_;
   float width_ = 0;
 };
@@ -226,6 +262,14 @@ std::vector<FoldLine> find_fold_lines(std::span<const Vector3f> rest,
             {.gauge_mm = 2.5f, .gain = 0.9f, .limit_mm = 0.45f, .groove_mm = 1.2f, .bulge = 0.5f},
             0.7f);
       }
+  if (const auto brows = tip ? face.glabella(*tip) : std::nullopt)
+    for (const float up : {9.f, 17.f, 25.f}) {
+      const auto at = [&](float beside, float higher) {
+        return Vector2f(brows->x() + unit * beside, brows->z() + unit * (up + higher));
+      };
+      add(std::array{at(-36, -4), at(-18, 1), at(0, -1), at(18, 1), at(36, -4)}, 1,
+          {.gauge_mm = 4, .gain = 0.8f, .limit_mm = 0.8f, .groove_mm = 1.7f, .bulge = 0.7f});
+    }
   if (const auto sulcus = face.mentolabial_point()) {
     const Vector2f at(sulcus->x(), sulcus->z());
     add(std::array{Vector2f(at - unit * Vector2f(15, 4)), at,

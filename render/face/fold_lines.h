@@ -24,10 +24,10 @@ struct FoldLine {
   float bulge = 0.6f;   // height of the skin beside the groove over the depth
 };
 
-/// Nasolabial folds, creases beside the corners of the mouth, lines around the lips and the
-/// mentolabial sulcus of a face at rest, mm, LPS. normals: unit, one per vertex. rim: vertices
-/// around the mouth. Lines that the surface does not show are omitted. Their course, from the ala
-/// round the corner of the mouth, and their depths were chosen by eye.
+/// Nasolabial folds, creases beside the corners of the mouth, lines around the lips and across the
+/// forehead, and the mentolabial sulcus of a face at rest, mm, LPS. normals: unit, one per vertex.
+/// rim: vertices around the mouth. Lines that the surface does not show are omitted. Their course,
+/// from the ala round the corner of the mouth, and their depths were chosen by eye.
 std::vector<FoldLine> find_fold_lines(std::span<const Eigen::Vector3f> rest,
                                       std::span<const Eigen::Vector3f> normals,
                                       std::span<const int> rim);

@@ -46,14 +46,20 @@ SkinFolds::SkinFolds(std::span<const Vector3f> rest, std::span<const Vector3f> n
     const auto n = line.samples.size();
     const float far =
         std::max(reach * line.groove_mm, std::max(2 * line.gauge_mm, 1.2f * line.far_mm));
+    Eigen::AlignedBox3f box;
+    for (const auto& sample : line.samples) box.extend(sample.point);
+    box.extend(Vector3f(box.min().array() - far));
+    box.extend(Vector3f(box.max().array() + far));
+    const auto belongs = [&](std::size_t v) {
+      return std::any_of(line.samples.begin(), line.samples.end(),
+                         [&](const FoldLine::Sample& sample) {
+                           return (rest[v] - sample.point).squaredNorm() < far * far &&
+                                  normals[v].dot(sample.normal) > facing;
+                         });
+    };
     std::vector<int> near;
     for (std::size_t v = 0; v < rest.size(); ++v)
-      for (const auto& sample : line.samples)
-        if ((rest[v] - sample.point).squaredNorm() < far * far &&
-            normals[v].dot(sample.normal) > facing) {
-          near.push_back(static_cast<int>(v));
-          break;
-        }
+      if (box.contains(rest[v]) && belongs(v)) near.push_back(static_cast<int>(v));
     if (near.empty()) continue;
     Line made{line, {}};
     for (const auto& sample : line.samples)

@@ -7,6 +7,7 @@
 
 #include "render/face/mouth_lining.h"
 #include "render/mesh/vertex_normals.h"
+#include "tests/render/face/opened_patient.h"
 #include "tests/render/face/slit_head.h"
 
 namespace condyle {
@@ -119,6 +120,26 @@ TEST(SkinFoldsTest, PursedLipsHaveLinesAroundThem) {
   }
   EXPECT_GT(above, 15);
   EXPECT_GT(below, 15);
+}
+
+TEST(SkinFoldsTest, TheForeheadHasThreeLinesAboveTheGlabellaWhereThereIsOne) {
+  const OpenedPatient& p = opened_patient();
+  const float glabella = static_cast<float>(p.scene.patient.landmarks.find("glabella").value().z());
+  for (const bool whole : {true, false}) {
+    std::vector<Vector3f> rest = p.rest;
+    for (auto& at : rest)
+      if (!whole && at.z() > 30) at.y() += 200;  // far behind the face
+    int lines = 0;
+    for (const FoldLine& line : find_fold_lines(rest, p.normals, p.prepared.lining()->rim)) {
+      const auto by_height = [](const auto& a, const auto& b) { return a.point.z() < b.point.z(); };
+      const auto [low, high] =
+          std::minmax_element(line.samples.begin(), line.samples.end(), by_height);
+      if (low->point.z() < glabella) continue;
+      EXPECT_LT(high->point.z(), glabella + 35);
+      ++lines;
+    }
+    EXPECT_EQ(lines, whole ? 3 : 0);
+  }
 }
 
 TEST(SkinFoldsTest, AFaceWithoutAMouthHasNone) {
