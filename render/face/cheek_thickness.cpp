@@ -25,8 +25,8 @@ constexpr CheekThickness::Region buccal{.front = 6,
                                         .full_to = 31,
                                         .back = farthest_back_mm,
                                         .height = 4,
-                                        .half_above = 26,
-                                        .half_below = 17,
+                                        .scale_above = 26,
+                                        .scale_below = 17,
                                         .gauge_back = 16,
                                         .gauge_up = -23,
                                         .slack = 0.05f,
@@ -38,8 +38,8 @@ constexpr CheekThickness::Region malar{.front = 0,
                                        .full_to = 20,
                                        .back = 42,
                                        .height = 26,
-                                       .half_above = 15,
-                                       .half_below = 15,
+                                       .scale_above = 15,
+                                       .scale_below = 15,
                                        .gauge_back = 3,
                                        .gauge_up = 0,
                                        .slack = 0.02f,
@@ -61,7 +61,7 @@ float weight_in(const CheekThickness::Region& region, const CheekPoint& p) {
   const double along = smooth_step((p.back - region.front) / (region.full_from - region.front)) *
                        smooth_step((region.back - p.back) / (region.back - region.full_to));
   const float above = p.up - region.height;
-  const float up = above / (above > 0 ? region.half_above : region.half_below);
+  const float up = above / (above > 0 ? region.scale_above : region.scale_below);
   return p.facing * static_cast<float>(along) * std::exp(-up * up);
 }
 
@@ -174,9 +174,10 @@ Vector3f CheekThickness::gauge_normal(const Cheek& cheek, std::span<const Vector
   const auto at = [&](std::size_t column, std::size_t row) -> const Vector3f& {
     return places[static_cast<std::size_t>(cheek.gauge[column][row])];
   };
+  const std::size_t used = cheek.region->sinks ? columns - 1 : columns;
   Vector3f up = Vector3f::Zero(), back = Vector3f::Zero();
-  for (std::size_t c = 0; c < columns; ++c) up += at(c, rows - 1) - at(c, 0);
-  for (std::size_t r = 0; r < rows; ++r) back += at(columns - 1, r) - at(0, r);
+  for (std::size_t c = 0; c < used; ++c) up += at(c, rows - 1) - at(c, 0);
+  for (std::size_t r = 0; r < rows; ++r) back += at(used - 1, r) - at(0, r);
   return up.cross(back).normalized();
 }
 

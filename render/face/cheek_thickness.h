@@ -10,11 +10,12 @@
 
 namespace condyle {
 
-/// Cheeks keep their volume, in pictures alone. As an opening jaw stretches a cheek over the buccal
-/// space, it sinks in: its width is held by the masseter and the lips, so its thickness falls in
-/// inverse proportion to its height. As a smile gathers the skin between the nasolabial fold and
-/// the eye, the cheek bulges there in inverse proportion to the area of the skin. At rest and where
-/// these change by less than a few hundredths, nothing changes, bit for bit. Deterministic.
+/// Cheeks get thinner or thicker, in pictures alone. As an opening jaw stretches a cheek over the
+/// buccal space, it sinks in: its width is held by the masseter and the lips, so its thickness
+/// falls in inverse proportion to its height. As a smile gathers the skin between the nasolabial
+/// fold and the eye, the cheek bulges there: the volume below that skin gathers in a third of its
+/// area, at most 4 mm high. At rest and where these change by less than a few hundredths, nothing
+/// changes, bit for bit. Deterministic.
 class CheekThickness {
  public:
   /// rest: displayed vertices of the face at rest, mm, LPS. normals: unit, one per vertex. rim: of
@@ -29,16 +30,16 @@ class CheekThickness {
   /// Where and how the thickness changes. Lengths are those of an adult, mm from the corner of the
   /// mouth: backward along the skin, and upward.
   struct Region {
-    float front, full_from, full_to, back;  // full change between, none outside
-    float height, half_above, half_below;   // of the full change, and of half of it
-    float gauge_back, gauge_up;             // foremost, lowest vertex that measures the skin
-    float slack;                            // change without effect, a fraction
-    float gain;                             // skin that is measured, over skin that is displaced
+    float front, full_from, full_to, back;   // full change between, none outside
+    float height, scale_above, scale_below;  // of the full change; distances to 1/e of it
+    float gauge_back, gauge_up;              // foremost, lowest vertex that measures the skin
+    float slack;                             // change without effect, a fraction
+    float gain;                              // skin that is measured, over skin that is displaced
     bool sinks;  // where its height grows; or bulges where its area falls
   };
 
  private:
-  static constexpr std::size_t columns = 4, rows = 7;  // of a gauge
+  static constexpr std::size_t columns = 4, rows = 7;  // of a gauge; hollows use three
   /// A vertex that is displaced.
   struct Member {
     int vertex;
@@ -55,7 +56,7 @@ class CheekThickness {
     std::vector<Member> members = {};
   };
   static Eigen::Vector3f gauge_normal(const Cheek& cheek, std::span<const Eigen::Vector3f> places);
-  /// Heights of the columns, or areas between them.
+  /// Heights of columns, or areas between them.
   static std::vector<float> extents(const Cheek& cheek, std::span<const Eigen::Vector3f> places);
 
   std::vector<Cheek> cheeks_;

@@ -258,7 +258,7 @@ std::vector<FoldLine> find_fold_lines(std::span<const Vector3f> rest,
         const auto at = [&](float beside, float height) {
           return Vector2f(stomion + unit * Vector2f(side * beside, up * height));
         };
-        add(std::array{at(out, red), at(1.3f * out, red + length)}, 1,
+        add(std::array{at(out, red), at(1.3f * out, red + length)}, side * up,
             {.gauge_mm = 2.5f, .gain = 0.9f, .limit_mm = 0.45f, .groove_mm = 1.2f, .bulge = 0.5f},
             0.7f);
       }

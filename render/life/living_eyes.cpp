@@ -109,24 +109,23 @@ LivingEyes::LivingEyes(const TriMesh& mesh) {
       on_[e].insert(on_[e].end(), piece.begin(), piece.end());
   }
   for (auto& piece : pieces_of(mesh, parted.lashes)) {
-    const std::size_t eyeball = nearest(place(piece.front()));
-    const Eyeball& ball = eyeballs_[eyeball];
+    const Eyeball& ball = eyeballs_[nearest(place(piece.front()))];
     const int root = *std::min_element(piece.begin(), piece.end(), [&](int a, int b) {
       return (place(a) - ball.centre).norm() < (place(b) - ball.centre).norm();
     });
-    lashes_.push_back({std::move(piece), place(root), eyeball});
+    pieces_.push_back({std::move(piece), place(root)});
   }
 }
 
 void LivingEyes::grow_from(std::span<const UpperLid> upper, std::span<const LowerLid> lower) {
-  for (Lash& lash : lashes_)
+  for (const auto& [vertices, root] : pieces_)
     for (std::size_t i = 0; i < upper.size(); ++i) {
       const Eyeball& ball = upper[i].eyeball();
-      if ((lash.root - ball.centre).norm() >= 1.5f * ball.radius) continue;
-      const bool above = upper[i].is_above(lash.root);
-      if (!above && !lower[i].grows(lash.root)) continue;
-      lash.lid = static_cast<int>(i);
-      lash.upper = above;
+      if ((root - ball.centre).norm() >= 1.5f * ball.radius) continue;
+      const bool above = upper[i].is_above(root);
+      if (!above && !lower[i].grows(root)) continue;
+      lashes_.push_back({vertices, root, i, above});
+      break;
     }
 }
 
@@ -167,15 +166,13 @@ void LivingEyes::move(const LifeSigns& signs, std::span<Vector3f> places,
   }
 }
 
-void LivingEyes::turn_lashes(const std::function<Eigen::Matrix3f(const Lash&)>& turn,
+void LivingEyes::turn_lashes(const std::function<Turn(const Lash&)>& turn,
                              std::span<Vector3f> places, std::span<Vector3f> normals) const {
   for (const Lash& lash : lashes_) {
-    if (lash.lid < 0) continue;
-    const Eigen::Matrix3f R = turn(lash);
-    const Vector3f& centre = eyeballs_[lash.eyeball].centre;
+    const auto [R, about] = turn(lash);
     for (const int v : lash.vertices) {
       Vector3f& p = places[static_cast<std::size_t>(v)];
-      p = centre + R * (p - centre);
+      p = about + R * (p - about);
       normals[static_cast<std::size_t>(v)] = R * normals[static_cast<std::size_t>(v)];
     }
   }

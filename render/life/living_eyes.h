@@ -25,12 +25,16 @@ class LivingEyes {
   struct Lash {
     std::vector<int> vertices;
     Eigen::Vector3f root;
-    std::size_t eyeball;  // that it is next to
-    int lid = -1;         // that it grows from; none: it stays
-    bool upper = true;
+    std::size_t lid;  // number of the eye's lids
+    bool upper;
   };
-  /// Gives the lashes to the lids: each to the one whose eyeball it is next to. upper, lower: of
-  /// the same eyes.
+  /// A rotation about a centre.
+  struct Turn {
+    Eigen::Matrix3f R;
+    Eigen::Vector3f about;
+  };
+  /// Gives the lashes to the lids: each to one whose eyeball it is next to; others stay. upper,
+  /// lower: of the same eyes.
   void grow_from(std::span<const UpperLid> upper, std::span<const LowerLid> lower);
 
   /// Unit gaze of an eyeball.
@@ -38,15 +42,21 @@ class LivingEyes {
   /// Turns the eyeballs, given at rest; normals: unit, one per vertex.
   void move(const LifeSigns& signs, std::span<Eigen::Vector3f> places,
             std::span<Eigen::Vector3f> normals) const;
-  /// Turns the lashes that grow from lids, given at rest, about their eyeballs' centres.
-  void turn_lashes(const std::function<Eigen::Matrix3f(const Lash&)>& turn,
-                   std::span<Eigen::Vector3f> places, std::span<Eigen::Vector3f> normals) const;
+  /// Turns the lashes that grow from lids, given at rest.
+  void turn_lashes(const std::function<Turn(const Lash&)>& turn, std::span<Eigen::Vector3f> places,
+                   std::span<Eigen::Vector3f> normals) const;
 
  private:
   std::vector<Eyeball> eyeballs_;
   std::vector<float> pupils_;         // radius at rest, mm; 0: without
   std::vector<std::vector<int>> on_;  // vertices of each eyeball
-  std::vector<Lash> lashes_;
+  /// A piece that is a lash.
+  struct LashPiece {
+    std::vector<int> vertices;
+    Eigen::Vector3f root;
+  };
+  std::vector<LashPiece> pieces_;
+  std::vector<Lash> lashes_;  // that grow from a lid
 };
 
 }  // namespace condyle

@@ -99,31 +99,31 @@ void LivingFace::find_nostrils(std::span<const Vector3f> rest, const Vector3f& t
     }
 }
 
-std::vector<float> LivingFace::raise_lids(const LifeSigns& signs,
-                                          std::span<Vector3f> places) const {
-  std::vector<float> raised;
-  for (std::size_t i = 0; i < lower_lids_.size(); ++i) {
-    const auto [part, eyeball] = lid_eyes_[i];
-    raised.push_back(lower_lids_[i].raised(places));
-    lower_lids_[i].move(raised.back(), eyes_[part]->gaze_of(eyeball, signs), places);
-  }
-  return raised;
-}
-
-void LivingFace::move_lids(const LifeSigns& signs, std::span<Vector3f> places) const {
+std::vector<LidPose> LivingFace::move_lids(const LifeSigns& signs, bool raises,
+                                           std::span<Vector3f> places) const {
+  std::vector<LidPose> poses;
   for (std::size_t i = 0; i < lids_.size(); ++i) {
     const auto [part, eyeball] = lid_eyes_[i];
-    lids_[i].move(lids_[i].lowered(signs), eyes_[part]->gaze_of(eyeball, signs), places);
+    const Vector3f gaze = eyes_[part]->gaze_of(eyeball, signs);
+    LidPose pose{.lowered = lids_[i].lowered(signs)};
+    if (raises) {
+      pose.raised = lower_lids_[i].raised(places);
+      lower_lids_[i].move(pose.raised, gaze, places);
+    }
+    pose.widening = lids_[i].move(pose.lowered, gaze, places);
+    poses.push_back(std::move(pose));
   }
+  return poses;
 }
 
-std::vector<SkinFolds::Shade> LivingFace::move_face(const Life& life, const LifeSigns& signs,
-                                                    std::span<Vector3f> places) const {
-  move_lids(signs, places);
+LivingFace::Moved LivingFace::move_face(const Life& life, const LifeSigns& signs, bool raises,
+                                        std::span<Vector3f> places) const {
+  Moved moved;
+  moved.lids = move_lids(signs, raises, places);
   if (signs.alive) breathe(life, signs, places);
-  std::vector<SkinFolds::Shade> shades;
-  for (const UpperLid& lid : lids_) lid.shade(lid.lowered(signs), shades);
-  return shades;
+  for (std::size_t i = 0; i < lids_.size(); ++i)
+    lids_[i].shade(moved.lids[i].lowered, moved.shades);
+  return moved;
 }
 
 void LivingFace::breathe(const Life& life, const LifeSigns& signs,
@@ -138,15 +138,16 @@ void LivingFace::breathe(const Life& life, const LifeSigns& signs,
     places[static_cast<std::size_t>(member.vertex)] += breath * member.breathes;
 }
 
-void LivingFace::move_eyes(std::size_t part, const LifeSigns& signs, std::span<const float> raised,
+void LivingFace::move_eyes(std::size_t part, const LifeSigns& signs, std::span<const LidPose> lids,
                            std::span<Vector3f> places, std::span<Vector3f> normals) const {
   if (!has_eyes(part)) return;
   eyes_[part]->move(signs, places, normals);
   eyes_[part]->turn_lashes(
-      [&](const LivingEyes::Lash& lash) -> Eigen::Matrix3f {
-        const auto lid = static_cast<std::size_t>(lash.lid);
-        if (lash.upper) return lids_[lid].turn_at(lash.root, lids_[lid].lowered(signs));
-        return lower_lids_[lid].turn_at(lash.root, lid < raised.size() ? raised[lid] : 0);
+      [&](const LivingEyes::Lash& lash) -> LivingEyes::Turn {
+        const UpperLid& upper = lids_[lash.lid];
+        return {lash.upper ? upper.turn_at(lash.root, lids[lash.lid])
+                           : lower_lids_[lash.lid].turn_at(lash.root, lids[lash.lid].raised),
+                upper.eyeball().centre};
       },
       places, normals);
 }

@@ -23,18 +23,23 @@ class LivingFace {
              std::span<const Eigen::Vector3i> triangles,
              const std::optional<Eigen::Vector3d>& nose_tip);
 
-  /// Moves the present vertices of the drawn face. Returns the shade of the lids' creases.
-  std::vector<SkinFolds::Shade> move_face(const Life& life, const LifeSigns& signs,
-                                          std::span<Eigen::Vector3f> places) const;
-  /// Raises the lower lids with the cheeks below them: before the upper lids, which meet them.
-  /// Returns the angle of each, rad, for move_eyes; all 0 where no cheek is raised.
-  std::vector<float> raise_lids(const LifeSigns& signs, std::span<Eigen::Vector3f> places) const;
-  /// Moves the vertices of the upper lids alone.
-  void move_lids(const LifeSigns& signs, std::span<Eigen::Vector3f> places) const;
+  /// What a face does besides its vertices.
+  struct Moved {
+    std::vector<SkinFolds::Shade> shades = {};  // of the lids' creases
+    std::vector<LidPose> lids = {};             // of each eye that has them
+  };
+  /// Moves the present vertices of the drawn face. raises: lower lids, with the cheeks below them.
+  Moved move_face(const Life& life, const LifeSigns& signs, bool raises,
+                  std::span<Eigen::Vector3f> places) const;
+  /// Moves the vertices of the lids alone: first the lower ones, which the upper ones meet.
+  std::vector<LidPose> move_lids(const LifeSigns& signs, bool raises,
+                                 std::span<Eigen::Vector3f> places) const;
+  /// Number of eyes that have lids.
+  std::size_t lid_count() const { return lids_.size(); }
   /// Whether move_eyes moves any vertex of the part with this number.
   bool has_eyes(std::size_t part) const { return part < eyes_.size() && eyes_[part].has_value(); }
-  /// Moves vertices and normals of a part, given at rest. raised: of the lower lids; empty: none.
-  void move_eyes(std::size_t part, const LifeSigns& signs, std::span<const float> raised,
+  /// Moves vertices and normals of a part, given at rest. lids: as moved.
+  void move_eyes(std::size_t part, const LifeSigns& signs, std::span<const LidPose> lids,
                  std::span<Eigen::Vector3f> places, std::span<Eigen::Vector3f> normals) const;
 
   /// What of it the patient lacks, as text; empty for nothing.

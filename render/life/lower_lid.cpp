@@ -19,7 +19,7 @@ constexpr double at_edge = 3 * degree;
 // The cheek that raises the lid: below the middle of its edge.
 constexpr double middle_mm = 7, cheek_from_mm = 9, cheek_to_mm = 15;
 constexpr float rise_per_cheek = 1;  // chosen by eye
-constexpr float most_raised = 0.3f;     // of the opening
+constexpr float most_raised = 0.3f;  // of the opening
 
 }  // namespace
 
@@ -57,10 +57,11 @@ float LowerLid::raised(std::span<const Vector3f> places) const {
       const auto at = above_.place_of(places[static_cast<std::size_t>(vertex)].cast<double>());
       sum += at.away * std::sin(at.up) - rest;
     }
-    return gauge.empty() ? 0 : static_cast<float>(sum / static_cast<double>(gauge.size()));
+    return static_cast<float>(sum / static_cast<double>(gauge.size()));
   };
-  const float asked =
-      rise_per_cheek * (risen(cheek_) - risen(edge_)) / static_cast<float>(above_.gap_at(0).away);
+  if (cheek_.empty() || edge_.empty()) return 0;
+  const float cheek = risen(cheek_), higher = std::min(cheek - risen(edge_), cheek);
+  const float asked = rise_per_cheek * higher / static_cast<float>(above_.gap_at(0).away);
   const float limit = most_raised * static_cast<float>(above_.widest());
   return asked > 0.002f ? asked * limit / std::hypot(asked, limit) : 0;
 }

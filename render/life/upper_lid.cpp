@@ -39,6 +39,15 @@ constexpr double measured_every = 1.2, measured_over = 0.9;  // mm
 constexpr int measured = 25;
 constexpr auto columns = static_cast<std::size_t>(2 * farthest_mm / step_mm) + 1;
 
+/// Interpolates what was measured along the axis; 0 without it.
+float widened(std::span<const float> measures, float along) {
+  if (measures.empty()) return 0;
+  const float at =
+      std::clamp(along / static_cast<float>(measured_every) + measured / 2, 0.f, measured - 1.001f);
+  const auto i = static_cast<std::size_t>(at);
+  return measures[i] + (at - static_cast<float>(i)) * (measures[i + 1] - measures[i]);
+}
+
 double along_of(std::size_t column) { return -farthest_mm + step_mm * static_cast<double>(column); }
 
 }  // namespace
@@ -303,25 +312,21 @@ double UpperLid::lowered(const LifeSigns& signs) const {
   return std::clamp(open + closure * (1 - open), highest, 1.0);
 }
 
-void UpperLid::move(double lowered, const Vector3f& gaze, std::span<Vector3f> places) const {
-  if (lowered == 0) return;
-  const std::vector<float> wider = widening(places);
-  const auto widened = [&](float along) {
-    const float at = std::clamp(along / static_cast<float>(measured_every) + measured / 2, 0.f,
-                                measured - 1.001f);
-    const auto i = static_cast<std::size_t>(at);
-    return wider[i] + (at - static_cast<float>(i)) * (wider[i + 1] - wider[i]);
-  };
+std::vector<float> UpperLid::move(double lowered, const Vector3f& gaze,
+                                  std::span<Vector3f> places) const {
+  if (lowered == 0) return {};
+  std::vector<float> wider = widening(places);
   const auto creased = static_cast<float>(smooth_step(2 * lowered));
   float farthest = eyeball_.radius;
   for (const float reach : eyeball_.profile) farthest = std::max(farthest, reach);
   for (const auto& [vertex, turn, share, along, crease, raised] : members_) {
     Vector3f& p = places[static_cast<std::size_t>(vertex)];
-    const float angle = -static_cast<float>(lowered) * (turn + share * widened(along));
+    const float angle = -static_cast<float>(lowered) * (turn + share * widened(wider, along));
     // A thin lid has no room for the crease.
     const float room = std::max(0.f, (p - eyeball_.centre).norm() - farthest - clear_mm);
     p = slid(p, angle, gaze, creased * std::max(raised, -room / 2));
   }
+  return wider;
 }
 
 Vector3f UpperLid::slid(const Vector3f& p, float angle, const Vector3f& gaze, float off) const {
@@ -349,8 +354,10 @@ bool UpperLid::is_above(const Vector3f& point) const {
   return gap.top > gap.bottom && at.up > (gap.bottom + gap.top) / 2;
 }
 
-Eigen::Matrix3f UpperLid::turn_at(const Vector3f& point, double lowered) const {
-  return turned(-lowered * way_at(place_of(point.cast<double>()).along));
+Eigen::Matrix3f UpperLid::turn_at(const Vector3f& point, const LidPose& lids) const {
+  const double along = place_of(point.cast<double>()).along;
+  return turned(-lids.lowered *
+                (way_at(along) + widened(lids.widening, static_cast<float>(along))));
 }
 
 Eigen::Matrix3f UpperLid::turned(double angle) const {

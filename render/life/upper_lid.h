@@ -27,6 +27,13 @@ struct Eyeball {
 /// A side of the patient.
 enum class FaceSide { left, right };
 
+/// Where the lids of one eye are.
+struct LidPose {
+  double lowered = 0;                // of the upper one: fraction of the way to the lower one
+  std::vector<float> widening = {};  // of the opening at rest, as UpperLid::move found it
+  float raised = 0;                  // of the lower one, rad
+};
+
 /// The upper lid of one eye, which slides on the eyeball: it turns about the line between the
 /// canthi through the eyeball's centre, so that each point keeps its distance from the latter.
 /// The skin between the lid's edge and the fold above it stretches.
@@ -66,15 +73,17 @@ class UpperLid {
   double lowered(const LifeSigns& signs) const;
 
   /// Moves the lid's vertices by a fraction of the way to the lower lid, from where the face's
-  /// expression has both lids; none enters the eyeball. gaze: unit.
-  void move(double lowered, const Eigen::Vector3f& gaze, std::span<Eigen::Vector3f> places) const;
+  /// expression has both lids; none enters the eyeball. gaze: unit. Returns by how much more than
+  /// at rest the lids were apart, rad, along the axis; empty where nothing moves.
+  std::vector<float> move(double lowered, const Eigen::Vector3f& gaze,
+                          std::span<Eigen::Vector3f> places) const;
   /// Adds the shade of the crease above the tarsus, which a lowered lid has.
   void shade(double lowered, std::vector<SkinFolds::Shade>& shades) const;
 
   /// Whether a point on a lid's edge at rest is on the upper lid.
   bool is_above(const Eigen::Vector3f& point) const;
   /// Rotation about the eyeball's centre of what grows from the edge at this point.
-  Eigen::Matrix3f turn_at(const Eigen::Vector3f& point, double lowered) const;
+  Eigen::Matrix3f turn_at(const Eigen::Vector3f& point, const LidPose& lids) const;
 
  private:
   struct Member {

@@ -83,21 +83,27 @@ void FaceShape::send(std::span<const Part> parts, std::span<Drawable> drawables,
   Drawable::FaceLook drawn{.folded = look.folds};
   const bool moves_lids = look.signs.has_value(), raises = look.folds && !places_.empty();
   const LifeSigns signs = look.signs.value_or(LifeSigns{.alive = false});
-  std::vector<float> raised;
+  std::vector<LidPose> lids;
   if (moves_lids || raises) {
     const LivingFace& own = living(parts, *face, look);
     drawn.alive = [&](std::span<Eigen::Vector3f> places) {
-      if (raises) raised = own.raise_lids(signs, places);
-      return own.move_face(look.life.value_or(Life{}), signs, places);
+      auto moved = own.move_face(look.life.value_or(Life{}), signs, raises, places);
+      lids = std::move(moved.lids);
+      return std::move(moved.shades);
     };
   }
   if (moves_lids)
     // The skin of a closed lid is unfolded, not drawn out to streaks.
-    drawn.relief = [&](std::span<Eigen::Vector3f> places) { living_->move_lids(signs, places); };
+    drawn.relief = [&](std::span<Eigen::Vector3f> places) {
+      living_->move_lids(signs, false, places);
+    };
   face->move_face(places_.empty() ? float_positions(rest) : places_, drawn, normals_);
-  const bool moves_eyes = moves_lids || std::any_of(raised.begin(), raised.end(),
-                                                    [](float angle) { return angle > 0; });
-  if (moves_eyes || eyes_moved_) send_eyes(drawables, signs, raised);
+  const bool moves_eyes = moves_lids || std::any_of(lids.begin(), lids.end(),
+                                                    [](const LidPose& p) { return p.raised > 0; });
+  if (moves_eyes || eyes_moved_) {
+    lids.resize(living_->lid_count());
+    send_eyes(drawables, signs, lids);
+  }
   eyes_moved_ = moves_eyes;
   sent_ = look;
 }
@@ -111,7 +117,7 @@ LivingFace& FaceShape::living(std::span<const Part> parts, const Drawable& face,
 }
 
 void FaceShape::send_eyes(std::span<Drawable> drawables, const LifeSigns& signs,
-                          std::span<const float> raised) {
+                          std::span<const LidPose> lids) {
   ++eyes_number_;
   for (std::size_t i = 0; i < drawables.size(); ++i) {
     if (!living_->has_eyes(i)) continue;
@@ -119,7 +125,7 @@ void FaceShape::send_eyes(std::span<Drawable> drawables, const LifeSigns& signs,
     auto& [places, normals] = eyes_[i];
     places = float_positions(mesh);
     vertex_normals(places, mesh.triangles, normals);
-    living_->move_eyes(i, signs, raised, places, normals);
+    living_->move_eyes(i, signs, lids, places, normals);
     drawables[i].mesh.send_shape(places, normals);
   }
 }

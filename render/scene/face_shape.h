@@ -59,7 +59,7 @@ class FaceShape {
   };
   LivingFace& living(std::span<const Part> parts, const Drawable& face, const Look& look);
   void send_eyes(std::span<Drawable> drawables, const LifeSigns& signs,
-                 std::span<const float> raised);
+                 std::span<const LidPose> lids);
 
   std::vector<Eigen::Vector3f> places_;      // empty: at rest
   std::optional<Look> sent_;                 // none: the places were not sent yet

@@ -108,9 +108,14 @@ TEST(SkinFoldsTest, PursedLipsHaveLinesAroundThem) {
   ASSERT_TRUE(head.folds);
   std::vector<Vector3f> pursed = head.rest;
   for (auto& p : pursed)
-    if (p.y() < 0) p.x() *= 1 - 0.2f * std::exp(-p.squaredNorm() / (60 * 60) * 0.1f);
+    if (p.y() < 0) p.x() *= 0.8f;
   std::vector<Vector3f> places = pursed;
   EXPECT_FALSE(head.folds->apply(places).empty());
+  // A symmetric face folds symmetrically.
+  float left = 0, right = 0;
+  for (std::size_t v = 0; v < places.size(); ++v)
+    (head.rest[v].x() > 0 ? left : right) += (places[v] - pursed[v]).norm();
+  EXPECT_NEAR(left, right, 0.05f * left);
   int above = 0, below = 0;
   for (std::size_t v = 0; v < places.size(); ++v) {
     const Vector3f& p = head.rest[v];

@@ -36,8 +36,12 @@ class LivingPatient : public testing::Test {
 
   std::vector<Vector3f> moved(const LifeSigns& signs) const {
     auto places = rest_;
-    living_.move_face({}, signs, places);
+    living_.move_face({}, signs, false, places);
     return places;
+  }
+  std::vector<LidPose> lids_of(const LifeSigns& signs) const {
+    auto places = rest_;
+    return living_.move_lids(signs, false, places);
   }
   TriMesh skin_of(const LifeSigns& signs) const {
     TriMesh skin = face_.mesh;
@@ -51,7 +55,8 @@ class LivingPatient : public testing::Test {
     auto balls = floats(eyes_.mesh);
     std::vector<Vector3f> normals(balls.size(), Vector3f::UnitZ());
     for (std::size_t i = 0; i < patient().parts.size(); ++i)
-      if (&patient().parts[i] == &eyes_) living_.move_eyes(i, signs, {}, balls, normals);
+      if (&patient().parts[i] == &eyes_)
+        living_.move_eyes(i, signs, lids_of(signs), balls, normals);
     TriMesh eyes{{}, part_lashes(eyes_.mesh).eyes, {}};
     for (const auto& p : balls) eyes.vertices.push_back(p.cast<double>());
     const TriangleTree skin_tree(skin), eye_tree(eyes);
@@ -105,7 +110,7 @@ TEST_F(LivingPatient, AnExpressionClosesTheEyesOfItsSidesAndMovesNothingElse) {
   auto eyes = eyes_at_rest;
   std::vector<Vector3f> normals(eyes.size(), Vector3f::UnitZ());
   for (std::size_t i = 0; i < patient().parts.size(); ++i)
-    if (&patient().parts[i] == &eyes_) living_.move_eyes(i, wink, {}, eyes, normals);
+    if (&patient().parts[i] == &eyes_) living_.move_eyes(i, wink, lids_of(wink), eyes, normals);
   const auto radii = lash_radii(eyes_.mesh);
   int lashes = 0;
   for (std::size_t v = 0; v < eyes.size(); ++v)
@@ -134,7 +139,7 @@ TEST_F(LivingPatient, ALidClosesOnItsSideWhereverTheOriginIs) {
       /// Vertices left and right of the middle of the face that move.
       const auto moved = [&](const LidClosure& lids) {
         auto places = rest;
-        living.move_lids({.lids = lids, .alive = false}, places);
+        living.move_lids({.lids = lids, .alive = false}, false, places);
         std::pair<int, int> count;
         for (std::size_t v = 0; v < places.size(); ++v)
           if (places[v] != rest[v]) ++(rest_[v].x() > 0 ? count.first : count.second);
@@ -280,8 +285,8 @@ TEST_F(LivingPatient, TheNostrilsBreatheWhereverTheChinIs) {
   ASSERT_GT(in_front, 10);
   const LivingFace living(patient().parts, prognathic, face_.mesh.triangles, nose_tip_);
   auto places = prognathic, still = prognathic;
-  living.move_face({}, {.breath = 1}, places);
-  living.move_face({}, {}, still);
+  living.move_face({}, {.breath = 1}, false, places);
+  living.move_face({}, {}, false, still);
   float nose = 0;
   for (std::size_t v = 0; v < places.size(); ++v) {
     const float mm = (places[v] - still[v]).norm();

@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "engine/mesh/triangle_tree.h"
+#include "render/face/cheek_thickness.h"
+#include "render/face/lashes.h"
 #include "render/life/living_face.h"
 #include "tests/render/face/opened_patient.h"
 
@@ -22,10 +24,15 @@ class LowerLidTest : public testing::Test {
   const OpenedPatient& patient_ = opened_patient();
   LivingFace living_{patient_.scene.patient.parts, patient_.rest, patient_.face->mesh.triangles,
                      std::nullopt};
+  const CheekThickness cheeks_{patient_.rest, patient_.normals, patient_.prepared.lining()->rim,
+                               patient_.parts};
   const LifeSigns still_{.alive = false};
 
+  /// With the bulges of the cheeks, as pictures have them.
   std::vector<Vector3f> drawn(const std::string& words) const {
-    return opened_patient().drawn(opened_patient().frame(words));
+    auto places = opened_patient().drawn(opened_patient().frame(words));
+    cheeks_.apply(places);
+    return places;
   }
   std::size_t eyes_part() const {
     std::size_t part = 0;
@@ -37,7 +44,7 @@ class LowerLidTest : public testing::Test {
 TEST_F(LowerLidTest, RestAndAnOpenedMouthLeaveThemBitForBit) {
   for (const auto& places : {patient_.rest, drawn("open 30")}) {
     auto now = places;
-    for (const float angle : living_.raise_lids(still_, now)) EXPECT_EQ(angle, 0);
+    for (const LidPose& lids : living_.move_lids(still_, true, now)) EXPECT_EQ(lids.raised, 0);
     EXPECT_EQ(now, places);
   }
 }
@@ -47,9 +54,9 @@ TEST_F(LowerLidTest, ASmileRaisesThemAndNothingAboveTheOpening) {
   for (const char* words : {"smile 0.5", "smile 1"}) {
     const auto smooth = drawn(words);
     auto places = smooth;
-    const auto raised = living_.raise_lids(still_, places);
-    ASSERT_EQ(raised.size(), 2u);
-    EXPECT_NEAR(raised[0], raised[1], 0.02f) << words;
+    const auto lids = living_.move_lids(still_, true, places);
+    ASSERT_EQ(lids.size(), 2u);
+    EXPECT_NEAR(lids[0].raised, lids[1].raised, 0.02f) << words;
     float highest = 0;
     for (std::size_t v = 0; v < places.size(); ++v) {
       if (places[v] == smooth[v]) continue;
@@ -67,7 +74,7 @@ TEST_F(LowerLidTest, ASmileRaisesThemAndNothingAboveTheOpening) {
 TEST_F(LowerLidTest, ASmileOfOneSideRaisesThatLidAlone) {
   auto places = drawn("smile 1 left");
   const auto smooth = places;
-  living_.raise_lids(still_, places);
+  living_.move_lids(still_, true, places);
   int left = 0;
   for (std::size_t v = 0; v < places.size(); ++v) {
     if (places[v] == smooth[v]) continue;
@@ -77,11 +84,17 @@ TEST_F(LowerLidTest, ASmileOfOneSideRaisesThatLidAlone) {
   EXPECT_GT(left, 50);
 }
 
+TEST_F(LowerLidTest, AnEdgeThatMovesDownAloneRaisesNothing) {
+  auto places = patient_.rest;
+  for (auto& p : places)
+    if (p.z() > -2) p.z() -= 1.5f;
+  for (const LidPose& lids : living_.move_lids(still_, true, places)) EXPECT_EQ(lids.raised, 0);
+}
+
 TEST_F(LowerLidTest, NoRaisedSkinIsInsideAnEyeballAndClosedLidsMeet) {
-  auto places = drawn("AU6 1");
-  const auto smooth = places;
-  const LifeSigns closed{.lids = {1, 1}, .alive = false};
-  living_.raise_lids(closed, places);
+  const auto smooth = drawn("AU6 1");
+  auto places = smooth;
+  living_.move_lids(still_, true, places);
   const LivingEyes eyes(patient_.scene.patient.parts[eyes_part()].mesh);
   int checked = 0;
   for (std::size_t v = 0; v < places.size(); ++v) {
@@ -93,10 +106,11 @@ TEST_F(LowerLidTest, NoRaisedSkinIsInsideAnEyeballAndClosedLidsMeet) {
     ++checked;
   }
   EXPECT_GT(checked, 100);
-  living_.move_lids(closed, places);
+  auto closed = smooth;
+  living_.move_lids({.lids = {1, 1}, .alive = false}, true, closed);
   // Lines of sight to the middle of each eyeball meet skin.
   TriMesh skin = patient_.face->mesh;
-  for (std::size_t v = 0; v < places.size(); ++v) skin.vertices[v] = places[v].cast<double>();
+  for (std::size_t v = 0; v < closed.size(); ++v) skin.vertices[v] = closed[v].cast<double>();
   const TriangleTree tree(skin);
   for (const Eyeball& ball : eyes.eyeballs())
     for (float up = -5; up <= 5; up += 0.5f) {
@@ -106,23 +120,34 @@ TEST_F(LowerLidTest, NoRaisedSkinIsInsideAnEyeballAndClosedLidsMeet) {
     }
 }
 
-TEST_F(LowerLidTest, TheirLashesGoWithThem) {
-  auto places = drawn("smile 1");
-  const auto raised = living_.raise_lids(still_, places);
+TEST_F(LowerLidTest, LashesStayOnTheEdgesOfRaisedAndClosedLids) {
   const TriMesh& mesh = patient_.scene.patient.parts[eyes_part()].mesh;
   const auto at_rest = floats(mesh);
-  auto with = at_rest, without = at_rest;
-  std::vector<Vector3f> normals(at_rest.size(), Vector3f::UnitZ());
-  living_.move_eyes(eyes_part(), still_, raised, with, normals);
-  living_.move_eyes(eyes_part(), still_, {}, without, normals);
-  EXPECT_EQ(without, at_rest);
-  int moved = 0;
-  for (std::size_t v = 0; v < with.size(); ++v) {
-    if (with[v] == at_rest[v]) continue;
-    EXPECT_GT(with[v].z(), at_rest[v].z());
-    ++moved;
+  const auto radii = lash_radii(mesh);
+  /// Largest distance of a lash's root from the skin.
+  const auto farthest = [&](const std::vector<Vector3f>& places, const std::vector<LidPose>& lids,
+                            const LifeSigns& signs) {
+    auto eyes = at_rest;
+    std::vector<Vector3f> normals(eyes.size(), Vector3f::UnitZ());
+    living_.move_eyes(eyes_part(), signs, lids, eyes, normals);
+    TriMesh skin = patient_.face->mesh;
+    for (std::size_t v = 0; v < places.size(); ++v) skin.vertices[v] = places[v].cast<double>();
+    const TriangleTree skin_tree(skin), at_rest_tree(patient_.face->mesh);
+    double most = 0;
+    for (std::size_t v = 0; v < eyes.size(); ++v)
+      if (radii[v] > 0 && at_rest_tree.nearest(at_rest[v].cast<double>()).distance < 0.3)
+        most = std::max(most, skin_tree.nearest(eyes[v].cast<double>()).distance);
+    return most;
+  };
+  for (const LifeSigns& signs : {still_, LifeSigns{.lids = {1, 1}, .alive = false}}) {
+    auto places = drawn("smile 1");
+    const auto lids = living_.move_lids(signs, true, places);
+    const double off = farthest(places, lids, signs);
+    RecordProperty(signs.lids.any() ? "closed" : "open", std::to_string(off));
+    EXPECT_LT(off, 0.8);
+    // Lashes that do not go with the lids are off them.
+    EXPECT_GT(farthest(places, std::vector<LidPose>(2), signs), off);
   }
-  EXPECT_GT(moved, 100);
 }
 
 }  // namespace

@@ -139,6 +139,38 @@ TEST_F(LifePictures, AnExpressionClosesTheLidsWithLifeAndWithout) {
   EXPECT_NE(picture(frame_closing({1, 0}), off).rgba, picture(frame_at(0), off).rgba);
 }
 
+TEST_F(LifePictures, ACheekThatRisesRaisesTheLowerLidWhereFoldsAreDrawn) {
+  std::vector<Part> parts = eye_and_lids();
+  TriMesh& skin = parts[0].mesh;
+  const auto first = skin.vertices.size();
+  for (const double x : {-6.0, 6.0})  // a strip of cheek below the left eye
+    for (int row = 0; row < 8; ++row)
+      skin.vertices.push_back(eye_centre + Eigen::Vector3d(x, -13, -13 - row));
+  for (int row = 0; row < 7; ++row) {
+    const int a = static_cast<int>(first) + row;
+    skin.triangles.emplace_back(a, a + 8, a + 1);
+    skin.triangles.emplace_back(a + 1, a + 8, a + 9);
+  }
+  skin.colors.resize(skin.vertices.size(), {0.8f, 0.6f, 0.5f});
+  SceneRenderer renderer(parts);
+  FrameState rest = frame_at(0);
+  rest.face = float_positions(skin);
+  FrameState risen = rest;
+  for (std::size_t v = first; v < risen.face.size(); ++v) risen.face[v].z() += 2.5f;
+  const auto blue = [&](const FrameState& frame, bool folds) {
+    auto settings = alive();
+    settings.life.reset();
+    settings.folds = folds;
+    renderer.update(frame);
+    return blue_in(renderer.picture(eye_camera(), settings));
+  };
+  const int open = blue(rest, true);
+  EXPECT_LT(blue(risen, true), 0.93 * open);
+  EXPECT_EQ(blue(risen, false), open);
+  EXPECT_LT(blue(risen, true), 0.93 * open) << "folds switched on again";
+  EXPECT_EQ(blue(rest, true), open) << "back at rest";
+}
+
 TEST(LidsNote, SaysWhyTheLidsOfAPatientDoNotClose) {
   std::vector<Part> parts = eye_and_lids();
   EXPECT_EQ(lids_note(parts), "");
