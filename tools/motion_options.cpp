@@ -248,6 +248,7 @@ Motion motion_of(const MotionOptions& options, const Scene& scene, int threads) 
   motion.expression = [healthy = motion.expression, strengths](double time_s) {
     return weakened(healthy(time_s), strengths);
   };
+  motion.lid_strength = strengths.lids;
   return motion;
 }
 

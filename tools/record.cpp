@@ -225,6 +225,9 @@ int run_record(const RecordOptions& options, const CommonOptions& common) {
                     options.motion.respect_contact);
   const Motion& motion = playback.motion();
   const FrameTimes times = frame_times(options, motion.duration_s);
+  if (plan && plan->settings.life) plan->settings.life->lids = motion.lid_strength;
+  for (OtherLook& look : looks)
+    if (look.settings.life) look.settings.life->lids = motion.lid_strength;
 
   TraceWriter trace(options.out / "trace.csv", motion.muscle_names, scene.patient.bodies,
                     scene.patient.jaw);

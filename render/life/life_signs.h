@@ -16,6 +16,7 @@ struct Life {
   Eigen::Vector3d nodding_axis = Eigen::Vector3d::Zero();
   /// Landmark pronasale at rest, mm: the nostrils beside it breathe.
   std::optional<Eigen::Vector3d> nose_tip = {};
+  LidStrength lids = {};  // a weak side blinks less
   bool operator==(const Life&) const = default;
 };
 

@@ -58,6 +58,10 @@ std::uint64_t motion_hash(const Motion& motion, std::span<const double> times, d
   };
   for (int i = 0; i * step_s <= motion.duration_s; ++i) add(i * step_s);
   for (const double time_s : times) add(time_s);
+  if (const LidStrength& lids = motion.lid_strength; lids != LidStrength{}) {
+    const double strengths[] = {lids.left, lids.right};
+    hash = hash_bytes(strengths, sizeof strengths, hash);
+  }
   return hash;
 }
 

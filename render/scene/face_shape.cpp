@@ -74,7 +74,7 @@ void FaceShape::send(std::span<const Part> parts, std::span<Drawable> drawables,
   if (shows_life(parts, settings)) {
     look.life = settings.life;
     look.signs = life_signs(moment.time_s, moment.X_CM);
-    look.signs->lids = max_closure(look.signs->lids, moment.lids);
+    look.signs->lids = max_closure(look.life->lids * look.signs->lids, moment.lids);
   } else if (moment.lids.any()) {
     look.signs = LifeSigns{.lids = moment.lids, .alive = false};
   }

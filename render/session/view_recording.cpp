@@ -74,8 +74,9 @@ std::uint64_t shown_hash(const ViewRecording& subject, const PicturePlan& plan) 
        skin_opacity, from_x, to_x},
       {smooth_edges, supersampling, part_opacity, wireframe, mapped_up_to.value_or(-1)}};
   if (life) {
-    const auto& [nodding_axis, nose_tip] = *life;
+    const auto& [nodding_axis, nose_tip, lids] = *life;
     shown["life"] = {list(nodding_axis), nose_tip ? list(*nose_tip) : Json()};
+    if (lids != LidStrength{}) shown["life_lids"] = {lids.left, lids.right};
   }
   if (clip) shown["clip"] = {list(clip->point), list(clip->normal), clip->capped, clip->parts};
   if (cut_away) shown["cut"] = {list(cut_away->center), cut_away->radius_mm, cut_away->parts};

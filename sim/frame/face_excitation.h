@@ -18,6 +18,16 @@ inline LidClosure max_closure(const LidClosure& a, const LidClosure& b) {
   return {std::max(a.left, b.left), std::max(a.right, b.right)};
 }
 
+/// Of the muscles that close the lids: 1 healthy to 0 paralysed.
+struct LidStrength {
+  double left = 1, right = 1;
+  bool operator==(const LidStrength&) const = default;
+};
+
+inline LidClosure operator*(const LidStrength& strength, const LidClosure& lids) {
+  return {strength.left * lids.left, strength.right * lids.right};
+}
+
 /// What moves the face besides the jaw.
 struct FaceExcitation {
   std::vector<double> muscles = {};  // 0 to 1, of each muscle; missing ones are relaxed

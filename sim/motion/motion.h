@@ -65,6 +65,7 @@ struct Motion {
   std::function<MuscleStates(double time_s)> muscles = {};
   // Of the face at a time; empty: it is relaxed.
   std::function<FaceExcitation(double time_s)> expression = {};
+  LidStrength lid_strength = {};  // of blinks that are no part of the motion
   // X_CH at a time, rest to now, where muscles attach to a hyoid; empty: it is fixed.
   std::function<Pose(double time_s)> hyoid = {};
   std::optional<RecordingFacts> recording = {};  // of a file

@@ -49,8 +49,8 @@ FaceStrengths muscle_strengths(std::span<const std::string> specs,
       strengths.muscles[m] *= strength;
       found = true;
     }
-    if (of == lids || of == left_lids) strengths.left_lids *= strength, found = true;
-    if (of == lids || of == right_lids) strengths.right_lids *= strength, found = true;
+    if (of == lids || of == left_lids) strengths.lids.left *= strength, found = true;
+    if (of == lids || of == right_lids) strengths.lids.right *= strength, found = true;
     if (found) continue;
     std::string known;
     for (const FaceMuscle& muscle : muscles) known += ", " + muscle.name;
@@ -63,16 +63,15 @@ FaceStrengths muscle_strengths(std::span<const std::string> specs,
     strengths.muscles[m] *= muscles[m].name.starts_with("left_")    ? left
                             : muscles[m].name.starts_with("right_") ? right
                                                                     : 0.5 * (left + right);
-  strengths.left_lids *= left;
-  strengths.right_lids *= right;
+  strengths.lids.left *= left;
+  strengths.lids.right *= right;
   return strengths;
 }
 
 FaceExcitation weakened(FaceExcitation healthy, const FaceStrengths& strengths) {
   const std::size_t count = std::min(healthy.muscles.size(), strengths.muscles.size());
   for (std::size_t m = 0; m < count; ++m) healthy.muscles[m] *= strengths.muscles[m];
-  healthy.lids.left *= strengths.left_lids;
-  healthy.lids.right *= strengths.right_lids;
+  healthy.lids = strengths.lids * healthy.lids;
   return healthy;
 }
 

@@ -16,7 +16,7 @@ void check_weakness(std::span<const std::string> specs);
 /// 1 healthy to 0 paralysed, as in facial palsy.
 struct FaceStrengths {
   std::vector<double> muscles;  // of each muscle
-  double left_lids = 1, right_lids = 1;
+  LidStrength lids = {};
 };
 
 /// Strengths by those of a side (left, right), a muscle, or a kind on both sides. Several for one

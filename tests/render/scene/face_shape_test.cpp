@@ -139,6 +139,26 @@ TEST_F(LifePictures, AnExpressionClosesTheLidsWithLifeAndWithout) {
   EXPECT_NE(picture(frame_closing({1, 0}), off).rgba, picture(frame_at(0), off).rgba);
 }
 
+TEST_F(LifePictures, AWeakSideBlinksInPart) {
+  const std::vector<Part> parts = eye_and_lids();
+  SceneRenderer renderer(parts);
+  const auto blue = [&](const FrameState& frame, const LidStrength& lids) {
+    auto settings = alive();
+    settings.life->lids = lids;
+    renderer.update(frame);
+    return blue_in(renderer.picture(eye_camera(), settings));
+  };
+  const FrameState blinking = frame_at(time_of(1));
+  EXPECT_EQ(blue(blinking, {1, 0}), 0) << "the right eye is not in the picture";
+  const int open = blue(frame_at(0), {});
+  EXPECT_GT(blue(blinking, {0, 1}), 0.9 * open);
+  const int half = blue(blinking, {0.5, 1});
+  EXPECT_GT(half, 0.2 * open);
+  EXPECT_LT(half, 0.8 * open);
+  // An expression that closes the lids was weakened before.
+  EXPECT_EQ(blue(frame_closing({1, 1}), {0, 1}), 0);
+}
+
 TEST_F(LifePictures, ACheekThatRisesRaisesTheLowerLidWhereFoldsAreDrawn) {
   std::vector<Part> parts = eye_and_lids();
   TriMesh& skin = parts[0].mesh;
