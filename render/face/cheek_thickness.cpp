@@ -171,27 +171,25 @@ CheekThickness::CheekThickness(std::span<const Vector3f> rest, std::span<const V
 }
 
 Vector3f CheekThickness::gauge_normal(const Cheek& cheek, std::span<const Vector3f> places) {
-  const auto at = [&](std::size_t column, std::size_t row) -> const Vector3f& {
-    return places[static_cast<std::size_t>(cheek.gauge[column][row])];
-  };
   const std::size_t used = cheek.region->sinks ? columns - 1 : columns;
   Vector3f up = Vector3f::Zero(), back = Vector3f::Zero();
-  for (std::size_t c = 0; c < used; ++c) up += at(c, rows - 1) - at(c, 0);
-  for (std::size_t r = 0; r < rows; ++r) back += at(used - 1, r) - at(0, r);
+  for (std::size_t c = 0; c < used; ++c)
+    up += cheek.at(places, c, rows - 1) - cheek.at(places, c, 0);
+  for (std::size_t r = 0; r < rows; ++r)
+    back += cheek.at(places, used - 1, r) - cheek.at(places, 0, r);
   return up.cross(back).normalized();
 }
 
 std::vector<float> CheekThickness::extents(const Cheek& cheek, std::span<const Vector3f> places) {
-  const auto at = [&](std::size_t column, std::size_t row) -> const Vector3f& {
-    return places[static_cast<std::size_t>(cheek.gauge[column][row])];
-  };
   std::vector<float> sums;
   for (std::size_t c = 0; c + 1 < columns; ++c) {
     float sum = 0;
     for (std::size_t r = 0; r + 1 < rows; ++r)
       sum += cheek.region->sinks
-                 ? (at(c, r + 1) - at(c, r)).norm()
-                 : 0.5f * (at(c + 1, r + 1) - at(c, r)).cross(at(c, r + 1) - at(c + 1, r)).norm();
+                 ? (cheek.at(places, c, r + 1) - cheek.at(places, c, r)).norm()
+                 : 0.5f * (cheek.at(places, c + 1, r + 1) - cheek.at(places, c, r))
+                              .cross(cheek.at(places, c, r + 1) - cheek.at(places, c + 1, r))
+                              .norm();
     sums.push_back(sum);
   }
   return sums;

@@ -54,6 +54,11 @@ class CheekThickness {
     float shade_per_mm = 0;  // darkening over the depth
     float outward = 1;       // sign of the normal that the gauge gives
     std::vector<Member> members = {};
+    /// Present position of a vertex of the gauge.
+    const Eigen::Vector3f& at(std::span<const Eigen::Vector3f> places, std::size_t column,
+                              std::size_t row) const {
+      return places[static_cast<std::size_t>(gauge[column][row])];
+    }
   };
   static Eigen::Vector3f gauge_normal(const Cheek& cheek, std::span<const Eigen::Vector3f> places);
   /// Heights of columns, or areas between them.

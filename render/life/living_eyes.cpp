@@ -113,19 +113,17 @@ LivingEyes::LivingEyes(const TriMesh& mesh) {
     const int root = *std::min_element(piece.begin(), piece.end(), [&](int a, int b) {
       return (place(a) - ball.centre).norm() < (place(b) - ball.centre).norm();
     });
-    pieces_.push_back({std::move(piece), place(root)});
+    lashes_.push_back({std::move(piece), place(root)});
   }
 }
 
 void LivingEyes::grow_from(std::span<const UpperLid> upper, std::span<const LowerLid> lower) {
-  for (const auto& [vertices, root] : pieces_)
-    for (std::size_t i = 0; i < upper.size(); ++i) {
+  for (Lash& lash : lashes_)
+    for (std::size_t i = 0; i < upper.size() && !lash.lid; ++i) {
       const Eyeball& ball = upper[i].eyeball();
-      if ((root - ball.centre).norm() >= 1.5f * ball.radius) continue;
-      const bool above = upper[i].is_above(root);
-      if (!above && !lower[i].grows(root)) continue;
-      lashes_.push_back({vertices, root, i, above});
-      break;
+      if ((lash.root - ball.centre).norm() >= 1.5f * ball.radius) continue;
+      lash.upper = upper[i].is_above(lash.root);
+      if (lash.upper || lower[i].grows(lash.root)) lash.lid = i;
     }
 }
 
@@ -169,6 +167,7 @@ void LivingEyes::move(const LifeSigns& signs, std::span<Vector3f> places,
 void LivingEyes::turn_lashes(const std::function<Turn(const Lash&)>& turn,
                              std::span<Vector3f> places, std::span<Vector3f> normals) const {
   for (const Lash& lash : lashes_) {
+    if (!lash.lid) continue;
     const auto [R, about] = turn(lash);
     for (const int v : lash.vertices) {
       Vector3f& p = places[static_cast<std::size_t>(v)];

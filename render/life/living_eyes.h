@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -25,8 +26,8 @@ class LivingEyes {
   struct Lash {
     std::vector<int> vertices;
     Eigen::Vector3f root;
-    std::size_t lid;  // number of the eye's lids
-    bool upper;
+    std::optional<std::size_t> lid = {};  // index of the lids that it grows from; none: it stays
+    bool upper = true;
   };
   /// A rotation about a centre.
   struct Turn {
@@ -50,13 +51,7 @@ class LivingEyes {
   std::vector<Eyeball> eyeballs_;
   std::vector<float> pupils_;         // radius at rest, mm; 0: without
   std::vector<std::vector<int>> on_;  // vertices of each eyeball
-  /// A piece that is a lash.
-  struct LashPiece {
-    std::vector<int> vertices;
-    Eigen::Vector3f root;
-  };
-  std::vector<LashPiece> pieces_;
-  std::vector<Lash> lashes_;  // that grow from a lid
+  std::vector<Lash> lashes_;
 };
 
 }  // namespace condyle

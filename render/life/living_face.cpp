@@ -144,10 +144,10 @@ void LivingFace::move_eyes(std::size_t part, const LifeSigns& signs, std::span<c
   eyes_[part]->move(signs, places, normals);
   eyes_[part]->turn_lashes(
       [&](const LivingEyes::Lash& lash) -> LivingEyes::Turn {
-        const UpperLid& upper = lids_[lash.lid];
-        return {lash.upper ? upper.turn_at(lash.root, lids[lash.lid])
-                           : lower_lids_[lash.lid].turn_at(lash.root, lids[lash.lid].raised),
-                upper.eyeball().centre};
+        const std::size_t lid = *lash.lid;
+        return {lash.upper ? lids_[lid].turn_at(lash.root, lids[lid])
+                           : lower_lids_[lid].turn_at(lash.root, lids[lid].raised),
+                lids_[lid].eyeball().centre};
       },
       places, normals);
 }

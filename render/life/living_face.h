@@ -23,7 +23,7 @@ class LivingFace {
              std::span<const Eigen::Vector3i> triangles,
              const std::optional<Eigen::Vector3d>& nose_tip);
 
-  /// What a face does besides its vertices.
+  /// Results of move_face besides the vertices.
   struct Moved {
     std::vector<SkinFolds::Shade> shades = {};  // of the lids' creases
     std::vector<LidPose> lids = {};             // of each eye that has them

@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "engine/mesh/triangle_tree.h"
 #include "tests/render/face/opened_patient.h"
 
 namespace condyle {
@@ -135,19 +134,7 @@ TEST(CheekThicknessTest, SunkenCheeksStayClearOfJawsAndTeeth) {
   const auto smooth = opened_patient().drawn(frame);
   auto sunken = smooth;
   cheeks().apply(sunken);
-  std::size_t tested = 0;
-  double nearest = 1e9;
-  for (const Part* part : opened_patient().parts) {
-    if (!collides(part->role)) continue;
-    const TriangleTree tree(part->mesh);
-    const Pose X_BC = pose_of(*part, frame.poses).inverse();
-    for (std::size_t v = 0; v < smooth.size(); ++v) {
-      if (sunken[v] == smooth[v]) continue;
-      ++tested;
-      nearest = std::min(nearest, tree.nearest(X_BC * sunken[v].cast<double>()).distance);
-      EXPECT_GT(tree.signed_distance(X_BC * sunken[v].cast<double>()), 0);
-    }
-  }
+  const auto [tested, nearest] = opened_patient().clearance(frame, smooth, sunken);
   EXPECT_GT(tested, 400u);
   EXPECT_GT(nearest, 2);
   RecordProperty("nearest", std::to_string(nearest));

@@ -1,8 +1,12 @@
 #pragma once
 
+#include <algorithm>
+#include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "engine/mesh/triangle_tree.h"
 #include "render/face/drawn_face.h"
 #include "render/mesh/vertex_normals.h"
 #include "sim/phantom/phantom.h"
@@ -46,6 +50,25 @@ struct OpenedPatient {
   std::vector<Eigen::Vector3f> drawn(const FrameState& frame) const {
     const DrawnFace* smoother = prepared.face_of(*face);
     return smoother ? smoother->places(frame.face) : frame.face;
+  }
+  /// Of the vertices that differ from `before`: their number, for each jaw and row of teeth, and
+  /// their least distance from these, mm; negative inside.
+  std::pair<std::size_t, double> clearance(const FrameState& frame,
+                                           const std::vector<Eigen::Vector3f>& before,
+                                           const std::vector<Eigen::Vector3f>& places) const {
+    std::size_t tested = 0;
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const Part* part : parts) {
+      if (!collides(part->role)) continue;
+      const TriangleTree tree(part->mesh);
+      const Pose X_BC = pose_of(*part, frame.poses).inverse();
+      for (std::size_t v = 0; v < places.size(); ++v) {
+        if (places[v] == before[v]) continue;
+        ++tested;
+        nearest = std::min(nearest, tree.signed_distance(X_BC * places[v].cast<double>()));
+      }
+    }
+    return {tested, nearest};
   }
   /// Corner of the mouth at rest. side: 1 left, -1 right.
   Eigen::Vector3f corner(float side) const {

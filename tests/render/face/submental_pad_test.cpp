@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "engine/mesh/triangle_tree.h"
 #include "tests/render/face/opened_patient.h"
 
 namespace condyle {
@@ -109,18 +108,7 @@ TEST(SubmentalPadTest, TheJawStaysCovered) {
   const auto folded = opened_patient().drawn(frame);
   auto drawn = folded;
   pad().apply(drawn);
-  std::size_t tested = 0;
-  double nearest = 1e9;
-  for (const Part* part : opened_patient().parts) {
-    if (!collides(part->role)) continue;
-    const TriangleTree tree(part->mesh);
-    const Pose X_BC = pose_of(*part, frame.poses).inverse();
-    for (std::size_t v = 0; v < drawn.size(); ++v) {
-      if (drawn[v] == folded[v]) continue;
-      ++tested;
-      nearest = std::min(nearest, tree.signed_distance(X_BC * drawn[v].cast<double>()));
-    }
-  }
+  const auto [tested, nearest] = opened_patient().clearance(frame, folded, drawn);
   EXPECT_GT(tested, 400u);
   EXPECT_GT(nearest, 3);
   RecordProperty("nearest", std::to_string(nearest));
