@@ -62,9 +62,11 @@ void cut(const Group& group, int most, std::vector<Group>& to) {
     to.push_back({group.first + static_cast<std::size_t>(i), std::min(most, group.count - i)});
 }
 
-/// The groups of an edge by direction, and its first nodes.
+/// The groups of an edge by direction, the springs over all layers of four sheets (that beside the
+/// rising diagonals first), and its first nodes.
 struct EdgeGroups {
   std::array<Group, ElementBatches::Edge::directions> of;
+  std::array<Group, 2> over;
   ElementBatches::Edge edge;
 };
 
@@ -82,18 +84,43 @@ void cut_edge(const ElementBatches::Edge& edge,
     };
     to.push_back({{Group{from(of[0]) + static_cast<std::size_t>(above), count + 1 - above, above},
                    Group{from(of[1]), count}, Group{from(of[2]), count}},
+                  {},
                   {edge.a + low, edge.b + low}});
   }
+}
+
+/// Gives a spring to that part of an edge, from `first` on, whose sheets it joins over all layers.
+bool joins_over(const Group& group, int a, int b, std::vector<EdgeGroups>::iterator first,
+                std::vector<EdgeGroups>::iterator end) {
+  constexpr int across = ElementBatches::lanes - 1;
+  if (group.count != 1) return false;
+  for (auto part = first; part != end; ++part) {
+    if (part->of[ElementBatches::Edge::rising].count != across) continue;
+    const auto& [one, other] = part->edge;
+    const int which = a == one + across && b == other   ? 0
+                      : a == one && b == other + across ? 1
+                                                        : -1;
+    if (which < 0 || part->over[which].count > 0) continue;
+    part->over[which] = {group.first, 1, across};
+    return true;
+  }
+  return false;
 }
 
 }  // namespace
 
 ElementBatches::ElementBatches(const SpringPrismMesh& mesh) {
-  const auto &a = mesh.spring_a, &b = mesh.spring_b;
-  assert(b.size() == a.size() && mesh.rest_length.size() == a.size() &&
-         mesh.stiffness.size() == a.size());
+  assert(mesh.spring_b.size() == mesh.spring_a.size() &&
+         mesh.rest_length.size() == mesh.spring_a.size() &&
+         mesh.stiffness.size() == mesh.spring_a.size());
   assert(mesh.rest_volume.size() == mesh.prisms.size() &&
          mesh.volume_weight.size() == mesh.prisms.size());
+  batch_springs(mesh);
+  batch_prisms(mesh);
+}
+
+void ElementBatches::batch_springs(const SpringPrismMesh& mesh) {
+  const auto &a = mesh.spring_a, &b = mesh.spring_b;
   std::vector<EdgeGroups> of_edges;
   std::vector<Group> of_verticals, of_springs;
   const std::vector<Group> groups = spring_groups(mesh);
@@ -105,8 +132,13 @@ ElementBatches::ElementBatches(const SpringPrismMesh& mesh) {
     };
     const int one = a[level.first], other = b[level.first];
     if (diagonal(g + 1, one, other + 1) && diagonal(g + 2, other, one + 1)) {
+      const auto parts = static_cast<std::ptrdiff_t>(of_edges.size());
       cut_edge({one, other}, {level, groups[g + 1], groups[g + 2]}, of_edges);
       g += 2;
+      while (g + 1 < groups.size() &&
+             joins_over(groups[g + 1], a[groups[g + 1].first], b[groups[g + 1].first],
+                        of_edges.begin() + parts, of_edges.end()))
+        ++g;
     } else if (other == one + 1) {
       cut(level, lanes - 1, of_verticals);
     } else {
@@ -129,9 +161,11 @@ ElementBatches::ElementBatches(const SpringPrismMesh& mesh) {
   const auto ends = [&](const Group& group) {
     return group.count > 0 ? std::pair{a[group.first], b[group.first]} : std::pair{0, 0};
   };
-  for (const auto& [of, edge] : of_edges) {
+  for (const auto& [of, over, edge] : of_edges) {
     for (int direction = 0; direction < Edge::directions; ++direction)
       place(of[direction], lane(edges.size(), static_cast<Edge::Direction>(direction)));
+    place(over[0], lane(edges.size(), Edge::rising));
+    place(over[1], lane(edges.size(), Edge::falling));
     edges.push_back(edge);
   }
   for (const Group& group : of_verticals) vertical_edges.push_back({ends(group).first});
@@ -140,7 +174,9 @@ ElementBatches::ElementBatches(const SpringPrismMesh& mesh) {
   for (std::size_t i = 0; i < vertical_edges.size(); ++i)
     place(of_verticals[i], lane_of_vertical(i));
   for (std::size_t i = 0; i < spring_batches.size(); ++i) place(of_springs[i], lane_of_springs(i));
+}
 
+void ElementBatches::batch_prisms(const SpringPrismMesh& mesh) {
   std::vector<Group> of_columns, of_prisms;
   const auto between_columns = [&](std::size_t p) {
     const auto& at = mesh.prisms[p];

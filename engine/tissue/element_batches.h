@@ -16,8 +16,9 @@ struct ElementBatches {
   static constexpr std::size_t align = 4;  // the numbers of batches are multiples of this
   explicit ElementBatches(const SpringPrismMesh& mesh);
 
-  /// Up to ten springs between two columns of up to four sheets. In lane i, `level` joins a + i and
-  /// b + i, `rising` a + i and b + i + 1, `falling` a + i + 1 and b + i.
+  /// Up to twelve springs between two columns of up to four sheets. In lane i, `level` joins a + i
+  /// and b + i, `rising` a + i and b + i + 1, `falling` a + i + 1 and b + i; i + 1 is 0 after the
+  /// last lane.
   struct Edge {
     int a = 0, b = 0;
     enum Direction { level, rising, falling, directions };
@@ -63,6 +64,10 @@ struct ElementBatches {
   // Per lane of the prism columns, then of the other prisms: 1 / v0 and w v0^2; zero in unused
   // lanes.
   std::vector<double> inverse_volume, volume_energy;
+
+ private:
+  void batch_springs(const SpringPrismMesh& mesh);
+  void batch_prisms(const SpringPrismMesh& mesh);
 };
 
 /// Three rows of numbers, one per axis, each padded by ElementBatches::lanes.

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "engine/core/error.h"
+#include "engine/tissue/shear_springs.h"
 #include "engine/tissue/spring_map.h"
 
 namespace condyle {
@@ -43,21 +44,32 @@ namespace {
 class LayeredMeshBuilder {
  public:
   LayeredMeshBuilder(const std::vector<Eigen::Vector3i>& triangles, int sheets, const Nodes& nodes,
-                     const std::vector<LayerMaterial>& layers, double compression_ratio)
+                     const std::vector<LayerMaterial>& layers, double compression_ratio,
+                     ShearSprings shear_springs)
       : sheets_(sheets),
         last_(sheets - 1),
         columns_(static_cast<int>(nodes.size()) / sheets),
         nodes_(nodes),
         layers_(layers),
         edges_(edges_of(triangles)),
+        windows_(shear_springs == ShearSprings::none ? std::vector<LayerWindow>()
+                                                     : layer_windows(last_, flatness())),
         fraction_(of_layer(columns_, 0), 0.0),
         across_(fraction_),
         along_(of_sheet(edges_.size(), 0), 0.0),
-        diagonal_(of_layer(edges_.size(), 0), 0.0) {
+        diagonal_(of_layer(edges_.size(), 0), 0.0),
+        windowed_(edges_.size() * windows_.size(), 0.0) {
     mesh_.node_count = static_cast<int>(nodes.size());
     mesh_.compression_ratio = compression_ratio;
-    for (const auto& t : triangles)
-      for (int layer = 0; layer < last_; ++layer) add_prism(t, layer);
+    std::vector<StackedPrism> stack(last_);
+    for (const auto& t : triangles) {
+      for (int layer = 0; layer < last_; ++layer) stack[layer] = make_prism(t, layer);
+      const std::vector<double> windows = take_shear_weights(stack, windows_);
+      for (int layer = 0; layer < last_; ++layer) share_out(t, layer, stack[layer]);
+      for (std::size_t w = 0; w < windows.size(); ++w)
+        for (int k = 0; k < 3; ++k)
+          windowed_[edge_at(t[k], t[(k + 1) % 3]) * windows_.size() + w] += windows[w];
+    }
     add_springs();
     add_masses();
   }
@@ -72,28 +84,43 @@ class LayeredMeshBuilder {
     return std::lower_bound(edges_.begin(), edges_.end(), edge) - edges_.begin();
   }
 
-  void add_prism(const Eigen::Vector3i& t, int layer) {
-    const double shear = layers_[layer].modulus_MPa / (2 * (1 + layers_[layer].poisson));
-    const double mean_shear = 2 * shear / (1 + mesh_.compression_ratio);
+  /// Mean height of a layer over the mean length of an edge of the outermost sheet.
+  double flatness() const {
+    double height = 0, length = 0;
+    for (int c = 0; c < columns_; ++c)
+      height += (nodes_[node_of(c, last_, sheets_)] - nodes_[node_of(c, 0, sheets_)]).norm();
+    for (const auto& [a, b] : edges_)
+      length += (nodes_[node_of(b, 0, sheets_)] - nodes_[node_of(a, 0, sheets_)]).norm();
+    return height / (columns_ * last_) / (length / static_cast<double>(edges_.size()));
+  }
+
+  /// A prism of a triangle's stack, which becomes one of the mesh's.
+  StackedPrism make_prism(const Eigen::Vector3i& t, int layer) {
+    StackedPrism made;
     std::array<int, 6> prism;
-    std::array<Eigen::Vector3d, 6> corners;
     for (int k = 0; k < 3; ++k) {
       prism[k] = node_of(t[k], layer, sheets_);
       prism[k + 3] = node_of(t[k], layer + 1, sheets_);
     }
-    for (int k = 0; k < 6; ++k) corners[k] = nodes_[prism[k]];
-    const double volume = prism_volume(nodes_, prism);
+    for (int k = 0; k < 6; ++k) made.corners[k] = nodes_[prism[k]];
+    made.volume = prism_volume(nodes_, prism);
+    const double shear = layers_[layer].modulus_MPa / (2 * (1 + layers_[layer].poisson));
+    made.shear = 2 * shear / (1 + mesh_.compression_ratio);
+    made.weights = isotropic_weights(made.corners, made.volume);
     mesh_.prisms.push_back(prism);
-    mesh_.rest_volume.push_back(volume);
-    mesh_.volume_weight.push_back(0.5 * bulk_modulus_of_prisms(layers_[layer]) / volume);
-    const PrismWeights weights = isotropic_weights(corners, volume);
+    mesh_.rest_volume.push_back(made.volume);
+    mesh_.volume_weight.push_back(0.5 * bulk_modulus_of_prisms(layers_[layer]) / made.volume);
+    return made;
+  }
+
+  void share_out(const Eigen::Vector3i& t, int layer, const StackedPrism& prism) {
     for (int k = 0; k < 3; ++k) {
-      fraction_[of_layer(t[k], layer)] += volume / 3;
-      across_[of_layer(t[k], layer)] += mean_shear * weights.across;
+      fraction_[of_layer(t[k], layer)] += prism.volume / 3;
+      across_[of_layer(t[k], layer)] += prism.shear * prism.weights.across;
       const auto edge = edge_at(t[k], t[(k + 1) % 3]);
-      along_[of_sheet(edge, layer)] += mean_shear * weights.along[k];
-      along_[of_sheet(edge, layer + 1)] += mean_shear * weights.along[k];
-      diagonal_[of_layer(edge, layer)] += mean_shear * weights.diagonal[k];
+      along_[of_sheet(edge, layer)] += prism.shear * prism.weights.along[k];
+      along_[of_sheet(edge, layer + 1)] += prism.shear * prism.weights.along[k];
+      diagonal_[of_layer(edge, layer)] += prism.shear * prism.weights.diagonal[k];
     }
   }
 
@@ -118,6 +145,12 @@ class LayeredMeshBuilder {
         for (int layer = 0; layer < last_; ++layer)
           add_spring(node_of(from, layer, sheets_), node_of(to, layer + 1, sheets_), layer, -1,
                      diagonal_[of_layer(e, layer)]);
+      for (std::size_t w = 0; w < windows_.size(); ++w)
+        if (const double weight = windowed_[e * windows_.size() + w]; weight > 0) {
+          const int first = windows_[w].first, last = first + windows_[w].count;
+          add_spring(node_of(a, last, sheets_), node_of(b, first, sheets_), first, -1, weight);
+          add_spring(node_of(a, first, sheets_), node_of(b, last, sheets_), first, -1, weight);
+        }
     }
     for (int column = 0; column < columns_; ++column)
       for (int layer = 0; layer < last_; ++layer)
@@ -143,11 +176,13 @@ class LayeredMeshBuilder {
   const Nodes& nodes_;
   const std::vector<LayerMaterial>& layers_;
   const std::vector<std::array<int, 2>> edges_;
+  const std::vector<LayerWindow> windows_;
   // Volume of a layer at each column.
   std::vector<double> fraction_;
   // Weight of each spring in N mm, shear modulus times the volume that it represents: across a
-  // layer at a column, along a sheet at an edge, and of both diagonals of a layer at an edge.
-  std::vector<double> across_, along_, diagonal_;
+  // layer at a column, along a sheet at an edge, and of both diagonals of a layer or of a window of
+  // layers at an edge.
+  std::vector<double> across_, along_, diagonal_, windowed_;
   SpringPrismMesh mesh_;
 };
 
@@ -155,7 +190,7 @@ class LayeredMeshBuilder {
 
 SpringPrismMesh layered_mesh(const std::vector<Eigen::Vector3i>& triangles, int sheets,
                              const Nodes& nodes, const std::vector<LayerMaterial>& layers,
-                             double compression_ratio) {
+                             ShearSprings shear_springs, double compression_ratio) {
   assert(sheets >= 2 && layers.size() + 1 == static_cast<std::size_t>(sheets));
   assert(nodes.size() % static_cast<std::size_t>(sheets) == 0);
   for (const auto& layer : layers) {
@@ -169,7 +204,8 @@ SpringPrismMesh layered_mesh(const std::vector<Eigen::Vector3i>& triangles, int 
   require(compression_ratio > 0 && compression_ratio <= 1,
           "the stiffness of shortened springs must be above 0 and at most 1 of the stretched ones'",
           compression_ratio);
-  return LayeredMeshBuilder(triangles, sheets, nodes, layers, compression_ratio).take();
+  return LayeredMeshBuilder(triangles, sheets, nodes, layers, compression_ratio, shear_springs)
+      .take();
 }
 
 void use_paper_form(SpringPrismMesh& mesh, const PaperForm& form) {

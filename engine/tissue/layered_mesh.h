@@ -42,8 +42,14 @@ inline int node_of(int column, int sheet, int sheets) { return column * sheets +
 /// Edges of a triangle mesh, each once with its smaller vertex first, in ascending order.
 std::vector<std::array<int, 2>> edges_of(const std::vector<Eigen::Vector3i>& triangles);
 
+/// Springs over several layers, which flat layers need to resist shear (shear_springs.h). The
+/// published structure has none, nor have the patients' tissues so far, whose constants are fitted
+/// without them.
+enum class ShearSprings { none, over_layers };
+
 /// Springs and prisms between sheets of the same triangle mesh. Per edge: one spring on each sheet
-/// and both diagonals of each side quad; per column: one spring across each layer.
+/// and both diagonals of each side quad, with shear springs two more over each window of layers;
+/// per column: one spring across each layer.
 /// `nodes` has columns * sheets entries in `node_of` order and is the rest state; triangles run
 /// counter-clockwise seen from the outermost sheet; one material per layer (sheets - 1).
 ///
@@ -60,12 +66,13 @@ std::vector<std::array<int, 2>> edges_of(const std::vector<Eigen::Vector3i>& tri
 /// throws: InputError for a modulus, Poisson's ratio, mass or compression fraction out of range.
 SpringPrismMesh layered_mesh(const std::vector<Eigen::Vector3i>& triangles, int sheets,
                              const Nodes& nodes, const std::vector<LayerMaterial>& layers,
+                             ShearSprings shear_springs = ShearSprings::none,
                              double compression_ratio = 0.05);
 
 /// Converts a layered mesh to equation (1) as published: one spring constant per layer, volumes in
 /// mm^3 beside lengths in mm, springs of equal stiffness in tension and compression, and no barrier
 /// (steps that would invert a prism are still rejected). The published form depends on the
-/// resolution; it serves to compare with published figures.
+/// resolution; it serves to compare with published figures. Precondition: no shear springs.
 struct PaperForm {
   std::vector<double> layer_stiffness;  // N/mm; one per layer
   double lambda = 0.9999;               // in (0, 1)

@@ -29,9 +29,13 @@ Tensor fourth_power(const Vector3d& n) {
 
 }  // namespace
 
+Vector3d across_prism(const std::array<Vector3d, 6>& c) {
+  return (c[1] - c[0] + c[4] - c[3]).cross(c[2] - c[0] + c[5] - c[3]).normalized();
+}
+
 PrismWeights isotropic_weights(const std::array<Vector3d, 6>& c, double volume) {
   Eigen::Matrix3d frame;  // rows x, y, z
-  const Vector3d up = (c[1] - c[0] + c[4] - c[3]).cross(c[2] - c[0] + c[5] - c[3]).normalized();
+  const Vector3d up = across_prism(c);
   frame.row(2) = up;
   frame.row(0) = up.unitOrthogonal();
   frame.row(1) = up.cross(Vector3d(frame.row(0)));
@@ -53,7 +57,8 @@ PrismWeights isotropic_weights(const std::array<Vector3d, 6>& c, double volume) 
 
   // Least squares with weights >= least, regularised towards equal weights; coordinate descent,
   // which always converges.
-  constexpr double even = 1, pull = 1e-4, least = 0.2;  // the trace is 15 over 15 springs
+  constexpr double even = 1, pull = 1e-4,
+                   least = least_spring_weight;  // the trace is 15 over 15 springs
   const Eigen::Matrix<double, 7, 7> normal =
       springs.transpose() * springs + pull * Eigen::Matrix<double, 7, 7>::Identity();
   const Eigen::Matrix<double, 7, 1> right =

@@ -17,12 +17,17 @@ namespace condyle {
 /// right angles halve the shear stiffness along the layer. Layers thinner than 0.6 of an edge, or
 /// thicker than 1.2 edges, would require negative stiffness. The weights are then the nearest ones
 /// above a small fraction of V: in layers of a third of an edge, shear across the layer is half of
-/// the exact value; in layers of three edges the thickness is four times too stiff.
+/// the exact value, which shear_springs.h makes up for; in layers of three edges the thickness is
+/// four times too stiff.
+constexpr double least_spring_weight = 0.2;  // over V
 struct PrismWeights {
   std::array<double, 3> along{};     // edges 01 12 20: each of the two springs
   std::array<double, 3> diagonal{};  // each of the two springs
   double across = 0;                 // each of the three springs
 };
+
+/// Unit direction across a prism, outward, from the mean of its upper and lower triangle.
+Eigen::Vector3d across_prism(const std::array<Eigen::Vector3d, 6>& corners);
 
 /// Corners as in SpringPrismMesh::prisms; volume above zero.
 PrismWeights isotropic_weights(const std::array<Eigen::Vector3d, 6>& corners, double volume);

@@ -48,7 +48,8 @@ struct SpringPrismMesh {
   double barrier_fraction = 0.5;
   double barrier_weight = 4.0;
 
-  // Layer of each spring, and the sheet of which it is an edge, or -1 across a layer.
+  // Layer of each spring (the outermost of several), and the sheet of which it is an edge, or -1
+  // across layers.
   std::vector<int> spring_layer, spring_sheet;
   std::vector<double> node_mass_kg;  // one per node, or none
 };

@@ -78,7 +78,8 @@ inline ElasticBlock make_block(const BoxSize& size, const LayerMaterial& materia
     block.rest[node] = block.pose * Eigen::Vector3d(at.cwiseProduct(size.mm()));
   });
   block.mesh = layered_mesh(block.triangles, size.layers + 1, block.rest,
-                            std::vector<LayerMaterial>(size.layers, material), compression_ratio);
+                            std::vector<LayerMaterial>(size.layers, material), ShearSprings::none,
+                            compression_ratio);
   return block;
 }
 

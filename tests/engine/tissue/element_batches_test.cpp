@@ -52,6 +52,27 @@ TEST(ElementBatches, GroupALayeredMeshByColumns) {
   }
 }
 
+/// The same with springs over several layers.
+SyntheticSet shear_set_of(int layers) {
+  SyntheticSet set = set_of(layers);
+  set.mesh = layered_mesh(set.triangles, set.sheets, set.rest, default_layers(layers).material,
+                          ShearSprings::over_layers);
+  return set;
+}
+
+TEST(ElementBatches, SpringsOverThreeLayersFillTheFreeLanesOfTheirEdge) {
+  for (const int layers : {2, 3, 5}) {
+    const SyntheticSet set = shear_set_of(layers);
+    EXPECT_GT(set.mesh.spring_a.size(), set_of(layers).mesh.spring_a.size());
+    const ElementBatches batches(set.mesh), without(set_of(layers).mesh);
+    EXPECT_EQ(batches.edges.size(), without.edges.size());
+    EXPECT_EQ(batches.spring_batches.empty(), layers == 3);
+    const auto given = std::accumulate(set.mesh.stiffness.begin(), set.mesh.stiffness.end(), 0.0);
+    EXPECT_NEAR(std::accumulate(batches.stiffness.begin(), batches.stiffness.end(), 0.0), given,
+                1e-12 * given);
+  }
+}
+
 /// Results of one instruction set for a mesh.
 struct KernelResult {
   std::vector<double> gradient, inverse_length;
@@ -123,10 +144,9 @@ TEST(ElementBatches, AllInstructionSetsAgree) {
 }
 
 // What the benchmark compares the batches with has their values.
-TEST(ElementBatches, PlainLoopsGiveTheSameEnergyAndGradient) {
+void expect_plain_loops_agree(const SyntheticSet& set) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> entry(-0.3, 0.3);
-  const SyntheticSet set = set_of(3);
   const ElementBatches batches(set.mesh);
   const std::size_t row = set.rest.size() + ElementBatches::lanes;
   std::vector<double> x(3 * row), own(3 * row), plain(3 * row), inverse(batches.rest_length.size());
@@ -157,6 +177,11 @@ TEST(ElementBatches, PlainLoopsGiveTheSameEnergyAndGradient) {
       x[axis * row + static_cast<std::size_t>(corners[k + 3])] =
           x[axis * row + static_cast<std::size_t>(corners[k])];
   EXPECT_TRUE(std::isinf(PlainElements(set.mesh).value_and_gradient(rows(x), scale, rows(plain))));
+}
+
+TEST(ElementBatches, PlainLoopsGiveTheSameEnergyAndGradient) {
+  expect_plain_loops_agree(set_of(3));
+  for (const int layers : {2, 3, 5}) expect_plain_loops_agree(shear_set_of(layers));
 }
 
 class AnyOrder : public testing::TestWithParam<int> {};

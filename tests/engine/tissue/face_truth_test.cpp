@@ -154,7 +154,8 @@ TEST(FaceTruth, SkinAgreesWithFiniteElementsWhenTheJawMovesFiveMillimetres) {
   fe::Body body{tets.points, {}, {young_MPa, poisson}};
   for (const auto& cell : tets.cells) body.tets.push_back({cell[0], cell[1], cell[2], cell[3]});
   const SpringPrismMesh plain =
-      layered_mesh(face.triangles, FaceNet::sheets, rest, {3, {young_MPa, poisson, 0}});
+      layered_mesh(face.triangles, FaceNet::sheets, rest, {3, {young_MPa, poisson, 0}},
+                   ShearSprings::over_layers);
 
   Pose forward, opened;
   forward.t = {0, -5, 0};
