@@ -140,6 +140,7 @@ std::vector<LayerWindow> layer_windows(int layers, double flatness) {
 std::vector<double> take_shear_weights(std::vector<StackedPrism>& stack,
                                        const std::vector<LayerWindow>& windows) {
   std::vector<double> weights;
+  weights.reserve(windows.size());
   for (const auto& [first, count] : windows)
     weights.push_back(Window(std::span(stack).subspan(first, count)).take());
   return weights;

@@ -19,6 +19,7 @@ constexpr double linear = 1;  // springs as stiff in compression as in extension
 std::vector<LayerMaterial> materials(int layers) {
   const std::array moduli = {0.04, 0.015, 0.025};
   std::vector<LayerMaterial> all;
+  all.reserve(static_cast<std::size_t>(layers));
   for (int i = 0; i < layers; ++i)
     all.push_back({.modulus_MPa = moduli[static_cast<std::size_t>(i) % moduli.size()]});
   return all;
