@@ -125,7 +125,7 @@ class Window {
 std::vector<LayerWindow> layer_windows(int layers, double flatness) {
   constexpr int in_a_batch = 3;      // see element_batches.h
   constexpr double steep = 0.9;      // height of a window, edges
-  constexpr double flattest = 0.01;  // of layers that are told apart
+  constexpr double flattest = 0.01;  // limits the number of layers in a window
   if (layers < 2) return {};
   const int most = std::max(in_a_batch, static_cast<int>(steep / std::max(flatness, flattest)));
   const int count = (layers + most - 1) / most;
