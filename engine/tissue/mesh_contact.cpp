@@ -289,7 +289,7 @@ double steepness(const PointContact& used, const PointContact& now, const Nodes&
 
 std::vector<PointContact> with_history(const std::vector<PointContact>& used,
                                        std::vector<PointContact> now, const Nodes& x,
-                                       double fraction, bool relaxed) {
+                                       double fraction, bool relaxed, bool steepened) {
   const double same_face = relaxed ? 0.7 : 0.9;  // cosine between the planes
   constexpr double stale_mm = 0.1;  // a plane is discarded when its point has moved this far
   std::vector<PointContact> both;
@@ -303,7 +303,10 @@ std::vector<PointContact> with_history(const std::vector<PointContact>& used,
       if (cosine >= same_face) {
         const double force = cosine * used[i].spring.stiffness * used[i].pressed(x);
         both[at].push = std::max(both[at].push, force / both[at].spring.stiffness);
-        if (relaxed && fraction > 0) both[at].steepness = steepness(used[i], both[at], x);
+        const bool overshot = used[i].gap * both[at].gap < 0;
+        if (steepened) both[at].steepness = used[i].steepness;
+        if ((relaxed || (steepened && overshot)) && fraction > 0)
+          both[at].steepness = steepness(used[i], both[at], x);
         if (fraction > 0) lean(used[i].spring.normal, fraction, both[at], x);
       } else if ((used[i].at - both[at].at).norm() < stale_mm &&
                  used[i].spring.gap(x) - cosine * both[at].gap > 0) {  // a groove, not an edge
@@ -350,8 +353,10 @@ ContactSolveResult solve_contact(const std::function<ContactLists(const Nodes&)>
                                  const std::function<Solved(bool contacts_settled)>& solve,
                                  MeshLoads& loads, Nodes& x, const ContactSolveSettings& settings,
                                  const ContactLists& before) {
-  // Planes that have not converged by then may oscillate between two directions.
+  // Planes that have not converged by then may oscillate: between two directions,
   const int undamped_searches = settings.damped ? 0 : 2;
+  // or because the gap changes several times as fast as its plane predicts.
+  constexpr int plain_searches = 12;
   ContactSolveResult result;
   ContactLists used = query(x);
   for (std::size_t i = 0; i < before.size(); ++i)
@@ -364,10 +369,11 @@ ContactSolveResult solve_contact(const std::function<ContactLists(const Nodes&)>
     result.contacts = query(x);
     result.error_mm = result.gap_mm = 0;
     const double fraction = result.solves > undamped_searches ? 0.5 : 0.0;
+    const bool steepened = result.solves > plain_searches;
     for (std::size_t i = 0; i < used.size(); ++i) {
       result.error_mm = std::max(result.error_mm, plane_error(used[i], result.contacts[i], x));
-      result.contacts[i] =
-          with_history(used[i], std::move(result.contacts[i]), x, fraction, settings.relaxed);
+      result.contacts[i] = with_history(used[i], std::move(result.contacts[i]), x, fraction,
+                                        settings.relaxed, steepened);
       result.gap_mm = std::max(result.gap_mm, gap_left(result.contacts[i], x));
     }
     const auto within = [&](double error_mm, double gap_mm) {

@@ -122,10 +122,12 @@ double plane_error(const std::vector<PointContact>& used, const std::vector<Poin
 /// that represent another face nearby: in a groove a point must satisfy the planes of both sides,
 /// or it would oscillate. The planes of `now` are rotated by `fraction` (0 to 1) towards those of
 /// `used`. `relaxed`: contacts at edges converge where they would oscillate: planes that differ by
-/// up to 45 degrees count as one curved face, and rotated planes get their steepness.
+/// up to 45 degrees count as one curved face, and rotated planes get their steepness. `steepened`:
+/// only those whose gap changes sign between searches get it, and keep it.
 std::vector<PointContact> with_history(const std::vector<PointContact>& used,
                                        std::vector<PointContact> now, const Nodes& x,
-                                       double fraction = 0, bool relaxed = false);
+                                       double fraction = 0, bool relaxed = false,
+                                       bool steepened = false);
 
 /// Moves contacts with their obstacle by X.
 void move_contacts(const Pose& X, std::vector<PointContact>& contacts);

@@ -290,6 +290,37 @@ TEST(MeshContact, TheSolverLearnsWhetherContactsAreSettled) {
   EXPECT_EQ(settled, (std::vector<bool>{false, true, false, true}));
 }
 
+// A node on a spring is drawn 1 mm into a surface whose gap changes four times as fast as its
+// plane.
+TEST(MeshContact, GapsSteeperThanTheirPlanesConverge) {
+  constexpr double steep = 4, stiffness = 3;
+  Nodes x = {Vector3d::Zero()};
+  MeshLoads loads;
+  const auto look = [&](const Nodes& at) {
+    PointContact contact;
+    contact.gap = steep * at[0].z();
+    contact.spring.node[0] = 0;
+    contact.spring.weight[0] = 1;
+    contact.spring.count = 1;
+    contact.spring.normal = Vector3d::UnitZ();
+    contact.spring.stiffness = stiffness;
+    contact.spring.offset = contact.spring.along(at) - contact.gap;
+    contact.at = at[0];
+    return ContactLists{{contact}};
+  };
+  const auto minimize_exactly = [&](bool) {
+    const double offset = loads.contacts[0].offset;
+    const double pressed = (stiffness * offset - 1) / (stiffness + 1);
+    x[0].z() = pressed < offset ? pressed : -1;
+    return Solved::at_minimum;
+  };
+  const auto result = solve_contact(look, minimize_exactly, loads, x, {.max_contact_searches = 40});
+  std::printf("settled after %d searches, gap %.3f mm\n", result.solves, result.gap_mm);
+  EXPECT_TRUE(result.settled);
+  EXPECT_LT(std::abs(steep * x[0].z()), 0.03);
+  EXPECT_NEAR(stiffness * result.contacts[0][0].push, 1, 0.1);
+}
+
 TEST(MeshContact, StifferContactStartsFromTheForcesOfTheSofter) {
   const ContactObstacle ball(test::sphere(5, 15), wide_box(), {});
   const Nodes x = {Vector3d(0, 0, 14.8), Vector3d(15.1, 0, 0)};
