@@ -43,8 +43,7 @@ inline int node_of(int column, int sheet, int sheets) { return column * sheets +
 std::vector<std::array<int, 2>> edges_of(const std::vector<Eigen::Vector3i>& triangles);
 
 /// Springs over several layers, which flat layers need to resist shear (shear_springs.h). The
-/// published structure has none, nor have the patients' tissues so far, whose constants are fitted
-/// without them.
+/// published structure has none.
 enum class ShearSprings { none, over_layers };
 
 /// Springs and prisms between sheets of the same triangle mesh. Per edge: one spring on each sheet

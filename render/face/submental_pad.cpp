@@ -20,7 +20,7 @@ constexpr float chin_from_mm = 12, chin_to_mm = 60, neck_mm = 95, gap_mm = 4;
 constexpr float least_depth_mm = 8;  // of the cervical point behind chin and neck
 constexpr float gauge_mm = 30;
 // The pad about the cervical point.
-constexpr float half_width_mm = 52, half_length_mm = 46;
+constexpr float half_width_mm = 52, half_length_mm = 47;
 constexpr double bulge_from = 0.75,
                  bulge_to = 0.4;  // distance of chin and throat over that at rest
 

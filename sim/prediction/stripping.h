@@ -19,7 +19,7 @@ struct StrippingSettings {
   double on_maxilla = 0.05;   // the same on the whole front of a Le Fort I segment
   double freed_mm = 20;       // from the cut of a genioplasty up to the vestibular incision
   double above_chin = 0.001;  // the fraction that remains there
-  double on_chin = 0.49;      // the fraction that remains on the chin segment, where it is degloved
+  double on_chin = 0.25;      // the fraction that remains on the chin segment, where it is degloved
   double septum = 0.4;        // of the nose over a Le Fort I segment that the septum holds back
   double resected = 0.001;    // the fraction that remains where the bone was resected
 };

@@ -209,6 +209,14 @@ std::vector<std::vector<double>> excitation_steps(std::span<const double> from,
   return steps;
 }
 
+/// Whether a prism is too thin to start from: the barrier against inversion would dwarf all else.
+bool any_collapsed(const SpringPrismMesh& elements, const Nodes& x) {
+  constexpr double least_volume = 0.01;  // of that at rest
+  for (std::size_t i = 0; i < elements.prisms.size(); ++i)
+    if (prism_volume(x, elements.prisms[i]) <= least_volume * elements.rest_volume[i]) return true;
+  return false;
+}
+
 /// One step to finite poses.
 TissueState solve_step(const TissueModel& model, const TissueState& previous,
                        std::span<const Pose> X_CB, std::span<const double> excitation,
@@ -220,7 +228,7 @@ TissueState solve_step(const TissueModel& model, const TissueState& previous,
   state.X_CB.assign(X_CB.begin(), X_CB.end());
   state.excitation.assign(excitation.begin(), excitation.end());
   state.nodes = model.opening.extrapolated(previous.nodes, model.support.node, previous.X_CB, X_CB);
-  if (count_inverted(mesh.elements, state.nodes) > 0) state.nodes = previous.nodes;
+  if (any_collapsed(mesh.elements, state.nodes)) state.nodes = previous.nodes;
 
   const SolverCache* last = warm.last.get();
   AsyncPreconditioner factor = last && last->mesh == model.mesh

@@ -37,7 +37,8 @@ SpringPrismMesh make_elements(const TissuePlan& plan, const LayerStack& layers,
                               const std::vector<Eigen::Vector3i>& triangles, const Nodes& rest) {
   constexpr double kg_per_mm3 = 1e-6;
   const int sheets = static_cast<int>(layers.fraction.size()) + 1;
-  SpringPrismMesh elements = layered_mesh(triangles, sheets, rest, layers.material);
+  SpringPrismMesh elements =
+      layered_mesh(triangles, sheets, rest, layers.material, ShearSprings::over_layers);
   if (plan.down) {
     auto material = layers.material;
     for (std::size_t layer = 0; layer < material.size(); ++layer) {
@@ -46,7 +47,7 @@ SpringPrismMesh make_elements(const TissuePlan& plan, const LayerStack& layers,
       for (std::size_t t = 0; t < triangles.size(); ++t)
         material[layer].mass_kg += kg_per_mm3 * elements.rest_volume[t * material.size() + layer];
     }
-    elements = layered_mesh(triangles, sheets, rest, material);
+    elements = layered_mesh(triangles, sheets, rest, material, ShearSprings::over_layers);
   }
   elements.lambda = plan.lambda.value_or(elements.lambda);
   if (plan.turgor) set_turgor(elements, *plan.turgor);
