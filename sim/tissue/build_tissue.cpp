@@ -121,7 +121,8 @@ std::shared_ptr<TissueMesh> make_layers(Build& build, std::vector<std::string>& 
         build.asked_layers.fraction.size(), build.layers.fraction.size()));
   column_settings.layer_fraction = build.layers.fraction;
   const auto sides = [&] {
-    return sides_of(skin.mesh, skin.mouth, build.region.fissure, tissue_defaults::side_reach_mm);
+    return sides_of(skin.mesh, skin.mouth, build.region.fissure, tissue_defaults::side_reach_mm)
+        .side;
   };
   columns = make_columns(skin, build.bones, build.anatomy, column_settings, build.patient.landmarks,
                          build.plan, sides(), notes);

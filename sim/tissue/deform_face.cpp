@@ -63,8 +63,9 @@ CarriedPoint carry_face_point(const TissueMesh& mesh, const FaceDisplay& display
   const int own = side != 0 ? side : display.fissure.side(p);
   std::vector<int> all(display.handles.node.size());
   std::iota(all.begin(), all.end(), 0);
+  const Vector3d at = display.fissure.sampled_at(p, display.corner_reach_mm);
   const auto to = [&](int h) {
-    return display.fissure.distance(p, own, mesh.rest[display.handles.node[h]],
+    return display.fissure.distance(at, own, mesh.rest[display.handles.node[h]],
                                     display.handle_side[h]);
   };
   // Motion varies sharply around the mouth, where a wide reach would smooth it out; farther away a
@@ -104,7 +105,7 @@ void deform_face(const TissueModel& model, const TissueState& state,
       LinearMap sum = LinearMap::Zero();
       for (int k = 0; k < CarriedPoint::capacity; ++k)
         sum += point.weight[k] * maps[static_cast<std::size_t>(point.handle[k])];
-      const Vector3f from = (display.face_rest[v] - origin).cast<float>();
+      const Vector3f from = (display.carried_from[i] - origin).cast<float>();
       face[v] += point.fade * (Eigen::Map<const Eigen::Matrix3f>(sum.data()) * from +
                                Eigen::Map<const Vector3f>(sum.data() + 9));
     }
@@ -123,7 +124,8 @@ Vector3d carried_point(const TissueModel& model, const TissueState& state,
       model.planned ? Vector3d(at_rest + display.face_rest[nearest] - face[nearest]) : at_rest;
   const CarriedPoint point = carry_face_point(mesh, display, rest, display.face_side[nearest]);
   const HandleMotion motion = shown_motion(model, state);
-  return carried(point, display.handles, mesh.rest, motion, rest);
+  const Vector3d from = display.fissure.sampled_at(rest, display.corner_reach_mm);
+  return rest + (carried(point, display.handles, mesh.rest, motion, from) - from);
 }
 
 }  // namespace condyle

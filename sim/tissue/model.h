@@ -53,11 +53,13 @@ struct TissueSupport {
 struct FaceDisplay {
   RegionShape region;
   OralFissure fissure;
+  double corner_reach_mm = 0;  // see OralFissure::sampled_at
   HandleSet handles;
   std::vector<double> handle_evened;     // 0 to 1: how strongly its motion is smoothed for display
   std::vector<signed char> handle_side;  // +1 above the lip line, -1 below
   std::vector<int> carried_vertex;       // of the face part
   std::vector<CarriedPoint> carried;
+  std::vector<Eigen::Vector3d> carried_from;  // the points whose motion these take
   std::vector<Eigen::Vector3d> face_rest;
   std::vector<signed char> face_side;
 };

@@ -94,9 +94,10 @@ void fields(Archive& archive, FaceDisplay& display) {
   HandleSet& handles = display.handles;
   archive(anatomy.condyles, anatomy.incisors, anatomy.mandible_low, anatomy.mandible_back,
           display.region.floor_z, display.region.upper_face, display.region.forehead_z,
-          display.fissure, handles.node, handles.first_neighbour, handles.neighbour,
-          handles.inverse_spread, handles.ring, display.handle_evened, display.handle_side,
-          display.carried_vertex, display.carried, display.face_side);
+          display.fissure, display.corner_reach_mm, handles.node, handles.first_neighbour,
+          handles.neighbour, handles.inverse_spread, handles.ring, display.handle_evened,
+          display.handle_side, display.carried_vertex, display.carried, display.carried_from,
+          display.face_side);
 }
 
 template <class Archive>

@@ -62,6 +62,28 @@ double OralFissure::distance_from(const Vector3d& p) const {
   return (p - right_ - along * line).norm();
 }
 
+namespace {
+
+/// Distance as seen from the front.
+double off_corner(const Vector3d& p, const Vector3d& corner) {
+  return std::hypot(p.x() - corner.x(), p.z() - corner.z());
+}
+
+}  // namespace
+
+bool OralFissure::at_corner(const Vector3d& p) const {
+  constexpr double near_mm = 3;
+  return found() && std::min(off_corner(p, right_), off_corner(p, left_)) < near_mm;
+}
+
+Vector3d OralFissure::sampled_at(const Vector3d& p, double reach) const {
+  if (!found() || reach <= 0) return p;
+  const Vector3d& corner = (p - right_).squaredNorm() < (p - left_).squaredNorm() ? right_ : left_;
+  const double s = (p - corner).norm() / reach;
+  if (s >= 1 || s < 1e-9) return p;
+  return corner + (std::sqrt(s) - 0.5 * s + 0.5 * s * s) / s * (p - corner);  // smooth at s = 1
+}
+
 double OralFissure::distance(const Vector3d& p, int side_p, const Vector3d& q, int side_q) const {
   const double straight = (p - q).norm();
   if (!found() || side_p == side_q) return straight;
@@ -70,30 +92,33 @@ double OralFissure::distance(const Vector3d& p, int side_p, const Vector3d& q, i
   const double up = std::max(side_p * height(p), 0.01), down = std::max(side_q * height(q), 0.01);
   const double x = p.x() + up / (up + down) * (q.x() - p.x());
   if (x <= x_.front() || x >= x_.back()) return straight;
-  return std::min((p - right_).norm() + (right_ - q).norm(),
-                  (p - left_).norm() + (left_ - q).norm());
+  // The slit is as wide at any depth: the path bends at the corner only as seen from the front.
+  const auto round = [&](const Vector3d& corner) {
+    return std::hypot(off_corner(p, corner) + off_corner(q, corner), p.y() - q.y());
+  };
+  return std::min(round(right_), round(left_));
 }
 
-std::vector<signed char> sides_of(const TriMesh& skin, const MouthOutline& mouth,
-                                  const OralFissure& fissure, double reach,
-                                  const std::vector<char>& lining) {
-  std::vector<signed char> side(skin.vertices.size());
-  for (std::size_t v = 0; v < side.size(); ++v)
-    side[v] = static_cast<signed char>(fissure.side(skin.vertices[v]));
-  if (!mouth.found()) return side;
+LipSides sides_of(const TriMesh& skin, const MouthOutline& mouth, const OralFissure& fissure,
+                  double reach, const std::vector<char>& lining) {
+  const std::size_t count = skin.vertices.size();
+  LipSides lips{std::vector<signed char>(count), std::vector<int>(count, -1),
+                std::vector<double>(count, std::numeric_limits<double>::infinity())};
+  for (std::size_t v = 0; v < count; ++v)
+    lips.side[v] = static_cast<signed char>(fissure.side(skin.vertices[v]));
+  if (!mouth.found()) return lips;
 
-  std::vector<std::vector<int>> ring(skin.vertices.size());
+  std::vector<std::vector<int>> ring(count);
   for (const auto& [a, b] : edges_of(skin.triangles)) {
     ring[a].push_back(b);
     ring[b].push_back(a);
   }
-  std::vector<double> distance_to_lip(skin.vertices.size(),
-                                      std::numeric_limits<double>::infinity());
   std::set<std::pair<double, int>> open;
   const auto start = [&](const std::vector<int>& lip, signed char s) {
     for (int v : lip) {
-      distance_to_lip[v] = 0;
-      side[v] = s;
+      lips.side[v] = s;
+      lips.to_edge[v] = 0;
+      lips.edge[v] = v;
       open.insert({0.0, v});
     }
   };
@@ -104,14 +129,15 @@ std::vector<signed char> sides_of(const TriMesh& skin, const MouthOutline& mouth
     open.erase(open.begin());
     for (int n : ring[v]) {
       const double next = d + (skin.vertices[n] - skin.vertices[v]).norm();
-      if (next >= distance_to_lip[n] || (next > reach && (lining.empty() || !lining[n]))) continue;
-      open.erase({distance_to_lip[n], n});
-      distance_to_lip[n] = next;
-      side[n] = side[v];
+      if (next >= lips.to_edge[n] || (next > reach && (lining.empty() || !lining[n]))) continue;
+      open.erase({lips.to_edge[n], n});
+      lips.to_edge[n] = next;
+      lips.edge[n] = lips.edge[v];
+      lips.side[n] = lips.side[v];
       open.insert({next, n});
     }
   }
-  return side;
+  return lips;
 }
 
 }  // namespace condyle

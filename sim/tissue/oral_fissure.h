@@ -21,9 +21,15 @@ class OralFissure {
   int side(const Eigen::Vector3d& p) const { return height(p) >= 0 ? 1 : -1; }
   /// Distance from the line between the corners, mm; infinite without a fissure.
   double distance_from(const Eigen::Vector3d& p) const;
+  /// Whether p lies on a corner, as seen from the front.
+  bool at_corner(const Eigen::Vector3d& p) const;
   /// Length of the shortest path from p to q that does not cross the fissure; sides as given, +1
   /// above, -1 below.
   double distance(const Eigen::Vector3d& p, int side_p, const Eigen::Vector3d& q, int side_q) const;
+
+  /// At the end of a slit, tissue opens with the square root of the distance to it; a mesh whose
+  /// edges are about as long as `reach` opens in proportion. Where that mesh moves as tissue at p.
+  Eigen::Vector3d sampled_at(const Eigen::Vector3d& p, double reach) const;
 
   template <class Archive>
   void fields(Archive& archive) {  // see engine/core/archive.h
@@ -35,10 +41,16 @@ class OralFissure {
   Eigen::Vector3d right_ = Eigen::Vector3d::Zero(), left_ = Eigen::Vector3d::Zero();
 };
 
-/// Side of each vertex: that of the lip that is nearer along the surface, up to `reach` mm from the
-/// mouth; by height beyond. `lining` (per vertex; may be empty): belongs to a lip at any distance.
-std::vector<signed char> sides_of(const TriMesh& skin, const MouthOutline& mouth,
-                                  const OralFissure& fissure, double reach,
-                                  const std::vector<char>& lining = {});
+/// The lip that each vertex of a skin belongs to.
+struct LipSides {
+  std::vector<signed char> side;  // +1 upper, -1 lower
+  std::vector<int> edge;          // nearest vertex of the edge of a lip along the surface, or -1
+  std::vector<double> to_edge;    // distance to it, mm; infinite without
+};
+
+/// The nearer lip along the surface, up to `reach` mm from the mouth; by height beyond. `lining`
+/// (per vertex; may be empty): belongs to a lip at any distance.
+LipSides sides_of(const TriMesh& skin, const MouthOutline& mouth, const OralFissure& fissure,
+                  double reach, const std::vector<char>& lining = {});
 
 }  // namespace condyle

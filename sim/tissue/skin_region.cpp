@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 
 #include "engine/core/error.h"
 #include "engine/math/smooth_step.h"
@@ -205,6 +206,24 @@ void tell_joined_sides(const TriMesh& face, const std::vector<char>& used,
   }
 }
 
+/// Joined vertices of the lining on the same side move with the same point of the skin.
+void carry_joined_lining(const TriMesh& face, const std::vector<char>& used,
+                         const std::vector<signed char>& side, std::vector<Vector3d>& carried_at) {
+  const auto key = [&](std::size_t v) {
+    const Vector3d& p = face.vertices[v];
+    return std::array<double, 3>{p.x(), p.y(), p.z()};
+  };
+  std::map<std::array<double, 3>, std::size_t> lining;
+  for (std::size_t v = 0; v < used.size(); ++v)
+    if (used[v] && carried_at[v] != face.vertices[v]) lining.emplace(key(v), v);
+  if (lining.empty()) return;
+  for (std::size_t v = 0; v < used.size(); ++v)
+    if (!used[v])
+      if (const auto found = lining.find(key(v));
+          found != lining.end() && side[found->second] == side[v])
+        carried_at[v] = carried_at[found->second];
+}
+
 /// Keeps small pieces of what is cut off: dips and bumps that the border of the region passes.
 void keep_small(const TriMesh& mesh, const std::vector<char>& dropped, std::vector<char>& keep) {
   constexpr double largest_mm2 = 150;
@@ -263,6 +282,45 @@ std::vector<char> triangles_inside(const TriMesh& mesh, const RegionShape& shape
   }
   keep_small(mesh, beyond, keep);
   return keep;
+}
+
+/// The point of the skin with which a point of the lining moves: the edge of the lip where it
+/// begins; deep in the mouth, the point itself.
+Vector3d carried_lining(const Vector3d& p, const Vector3d& edge, double to_edge_mm) {
+  constexpr double of_lip_mm = 8, fade_mm = 12;
+  return edge + smooth_step((to_edge_mm - of_lip_mm) / fade_mm) * (p - edge);
+}
+
+/// Fills `face_side` and `carried_at`: which lip each vertex belongs to, and with which point of
+/// the skin it moves. `edge`: of the lips in `mesh`; `lining`: its triangles; `source`: in the face
+/// part.
+void join_lips(const TriMesh& mesh, const MouthOutline& edge, const std::vector<char>& lining,
+               const std::vector<int>& source, SkinRegion& region) {
+  std::vector<char> lines(mesh.vertices.size(), 0);
+  for (std::size_t t = 0; t < lining.size(); ++t)
+    if (lining[t])
+      for (int v : mesh.triangles[t]) lines[v] = 1;
+  const auto side = sides_of(mesh, edge, region.fissure, 30, lines).side;
+  // The lining takes the side of the lip's edge where it begins. Beside a corner the outline of a
+  // lip turns into the mouth: the lining there belongs to neither.
+  MouthOutline margins = edge;
+  for (auto* run : {&margins.upper, &margins.lower})
+    std::erase_if(*run, [&](int v) { return region.fissure.at_corner(mesh.vertices[v]); });
+  const LipSides lips = sides_of(mesh, margins, region.fissure, 0, lines);
+  for (std::size_t v = 0; v < source.size(); ++v) {
+    if (source[v] < 0) continue;
+    region.face_side[source[v]] = side[v];
+    if (!lines[v] || lips.edge[v] < 0 || lips.to_edge[v] == 0) continue;
+    region.face_side[source[v]] = lips.side[v];
+    const Vector3d& p = mesh.vertices[v];
+    Vector3d at = mesh.vertices[edge.right_corner];
+    const auto take_nearer = [&](int e) {
+      if ((mesh.vertices[e] - p).squaredNorm() < (at - p).squaredNorm()) at = mesh.vertices[e];
+    };
+    take_nearer(edge.left_corner);
+    for (int e : lips.side[v] > 0 ? edge.upper : edge.lower) take_nearer(e);
+    region.carried_at[source[v]] = carried_lining(p, at, lips.to_edge[v]);
+  }
 }
 
 }  // namespace
@@ -346,23 +404,20 @@ SkinRegion cut_region(const TriMesh& face, const Landmarks& landmarks, const Ana
     }
 
   region.fissure = OralFissure(part, region.mouth);
-  // The lining takes the side of the lip's edge where it begins.
   MouthOutline edge = region.mouth;
   for (auto* run : {&edge.upper, &edge.lower})
     for (int& v : *run) v = kept_vertex[v];
-  std::vector<char> lines(mesh.vertices.size(), 0);
-  for (std::size_t t = 0; t < lining.size(); ++t)
-    if (lining[t])
-      for (int v : mesh.triangles[t]) lines[v] = 1;
-  const auto side = sides_of(mesh, edge, region.fissure, 30, lines);
+  for (int* corner : {&edge.right_corner, &edge.left_corner})
+    if (*corner >= 0) *corner = kept_vertex[*corner];
+  region.carried_at = face.vertices;
   region.face_side.assign(face.vertices.size(), 0);
-  for (std::size_t v = 0; v < side.size(); ++v)
-    if (source[v] >= 0) region.face_side[source[v]] = side[v];
+  join_lips(mesh, edge, lining, source, region);
   std::vector<char> used(face.vertices.size(), 0);
   for (const auto& t : mesh.triangles)
     for (int v : t)
       if (source[v] >= 0) used[source[v]] = 1;
   tell_joined_sides(face, used, region.face_side);
+  carry_joined_lining(face, used, region.face_side, region.carried_at);
   region.mesh = std::move(part);
   return region;
 }

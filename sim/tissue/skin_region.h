@@ -35,6 +35,9 @@ struct SkinRegion {
   std::optional<Eyes> eyes;  // within the region; none: it ends below them
   std::vector<signed char>
       face_side;  // of every vertex of the face part: +1 above the lip line, -1 below
+  // The point of the skin with which each vertex of the face part moves: itself, except of the
+  // lining of the lips.
+  std::vector<Eigen::Vector3d> carried_at;
 };
 
 /// The lining behind the lips, if the face has one, is not part of the region. `upper_face`: with
