@@ -25,6 +25,11 @@ double height_at(const std::vector<std::pair<double, double>>& run, double x) {
   return run.back().second;
 }
 
+/// Distance as seen from the front.
+double off_corner(const Vector3d& p, const Vector3d& corner) {
+  return std::hypot(p.x() - corner.x(), p.z() - corner.z());
+}
+
 }  // namespace
 
 OralFissure::OralFissure(const TriMesh& skin, const MouthOutline& mouth) {
@@ -62,15 +67,6 @@ double OralFissure::distance_from(const Vector3d& p) const {
   return (p - right_ - along * line).norm();
 }
 
-namespace {
-
-/// Distance as seen from the front.
-double off_corner(const Vector3d& p, const Vector3d& corner) {
-  return std::hypot(p.x() - corner.x(), p.z() - corner.z());
-}
-
-}  // namespace
-
 bool OralFissure::at_corner(const Vector3d& p) const {
   constexpr double near_mm = 3;
   return found() && std::min(off_corner(p, right_), off_corner(p, left_)) < near_mm;
@@ -102,7 +98,7 @@ double OralFissure::distance(const Vector3d& p, int side_p, const Vector3d& q, i
 LipSides sides_of(const TriMesh& skin, const MouthOutline& mouth, const OralFissure& fissure,
                   double reach, const std::vector<char>& lining) {
   const std::size_t count = skin.vertices.size();
-  LipSides lips{std::vector<signed char>(count), std::vector<int>(count, -1),
+  LipSides lips{std::vector<signed char>(count),
                 std::vector<double>(count, std::numeric_limits<double>::infinity())};
   for (std::size_t v = 0; v < count; ++v)
     lips.side[v] = static_cast<signed char>(fissure.side(skin.vertices[v]));
@@ -118,7 +114,6 @@ LipSides sides_of(const TriMesh& skin, const MouthOutline& mouth, const OralFiss
     for (int v : lip) {
       lips.side[v] = s;
       lips.to_edge[v] = 0;
-      lips.edge[v] = v;
       open.insert({0.0, v});
     }
   };
@@ -132,7 +127,6 @@ LipSides sides_of(const TriMesh& skin, const MouthOutline& mouth, const OralFiss
       if (next >= lips.to_edge[n] || (next > reach && (lining.empty() || !lining[n]))) continue;
       open.erase({lips.to_edge[n], n});
       lips.to_edge[n] = next;
-      lips.edge[n] = lips.edge[v];
       lips.side[n] = lips.side[v];
       open.insert({next, n});
     }

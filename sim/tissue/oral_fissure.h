@@ -21,14 +21,15 @@ class OralFissure {
   int side(const Eigen::Vector3d& p) const { return height(p) >= 0 ? 1 : -1; }
   /// Distance from the line between the corners, mm; infinite without a fissure.
   double distance_from(const Eigen::Vector3d& p) const;
-  /// Whether p lies on a corner, as seen from the front.
+  /// Whether p lies within 3 mm of a corner, as seen from the front.
   bool at_corner(const Eigen::Vector3d& p) const;
   /// Length of the shortest path from p to q that does not cross the fissure; sides as given, +1
   /// above, -1 below.
   double distance(const Eigen::Vector3d& p, int side_p, const Eigen::Vector3d& q, int side_q) const;
 
-  /// At the end of a slit, tissue opens with the square root of the distance to it; a mesh whose
-  /// edges are about as long as `reach` opens in proportion. Where that mesh moves as tissue at p.
+  /// At the end of a slit, tissue opens with the square root of the distance to it, a mesh whose
+  /// edges are not much shorter than `reach` in proportion to it. The point at which such a mesh
+  /// has the displacement that tissue has at p: p itself beyond `reach` of the corners.
   Eigen::Vector3d sampled_at(const Eigen::Vector3d& p, double reach) const;
 
   template <class Archive>
@@ -44,8 +45,7 @@ class OralFissure {
 /// The lip that each vertex of a skin belongs to.
 struct LipSides {
   std::vector<signed char> side;  // +1 upper, -1 lower
-  std::vector<int> edge;          // nearest vertex of the edge of a lip along the surface, or -1
-  std::vector<double> to_edge;    // distance to it, mm; infinite without
+  std::vector<double> to_edge;    // distance to its edge along the surface, mm; infinite: unknown
 };
 
 /// The nearer lip along the surface, up to `reach` mm from the mouth; by height beyond. `lining`

@@ -220,7 +220,7 @@ void carry_joined_lining(const TriMesh& face, const std::vector<char>& used,
   for (std::size_t v = 0; v < used.size(); ++v)
     if (!used[v])
       if (const auto found = lining.find(key(v));
-          found != lining.end() && side[found->second] == side[v])
+          found != lining.end() && side[found->second] * side[v] >= 0)
         carried_at[v] = carried_at[found->second];
 }
 
@@ -302,7 +302,7 @@ void join_lips(const TriMesh& mesh, const MouthOutline& edge, const std::vector<
       for (int v : mesh.triangles[t]) lines[v] = 1;
   const auto side = sides_of(mesh, edge, region.fissure, 30, lines).side;
   // The lining takes the side of the lip's edge where it begins. Beside a corner the outline of a
-  // lip turns into the mouth: the lining there belongs to neither.
+  // lip turns into the mouth: no lining begins there.
   MouthOutline margins = edge;
   for (auto* run : {&margins.upper, &margins.lower})
     std::erase_if(*run, [&](int v) { return region.fissure.at_corner(mesh.vertices[v]); });
@@ -310,7 +310,8 @@ void join_lips(const TriMesh& mesh, const MouthOutline& edge, const std::vector<
   for (std::size_t v = 0; v < source.size(); ++v) {
     if (source[v] < 0) continue;
     region.face_side[source[v]] = side[v];
-    if (!lines[v] || lips.edge[v] < 0 || lips.to_edge[v] == 0) continue;
+    region.carried_at[source[v]] = mesh.vertices[v];
+    if (!lines[v] || !std::isfinite(lips.to_edge[v]) || lips.to_edge[v] == 0) continue;
     region.face_side[source[v]] = lips.side[v];
     const Vector3d& p = mesh.vertices[v];
     Vector3d at = mesh.vertices[edge.right_corner];
