@@ -5,6 +5,9 @@
 
 namespace condyle {
 
+/// Of a spring, over the volume V of its prism: see PrismWeights.
+constexpr double least_spring_weight = 0.2;
+
 /// The volume of a prism that each of its springs represents: springs between its corners, with
 /// weights w (mm^3) and directions n, respond to small strains as an isotropic body,
 ///
@@ -19,7 +22,6 @@ namespace condyle {
 /// above a small fraction of V: in layers of a third of an edge, shear across the layer is half of
 /// the exact value, which shear_springs.h makes up for; in layers of three edges the thickness is
 /// four times too stiff.
-constexpr double least_spring_weight = 0.2;  // over V
 struct PrismWeights {
   std::array<double, 3> along{};     // edges 01 12 20: each of the two springs
   std::array<double, 3> diagonal{};  // each of the two springs
