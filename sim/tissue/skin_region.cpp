@@ -284,8 +284,8 @@ std::vector<char> triangles_inside(const TriMesh& mesh, const RegionShape& shape
   return keep;
 }
 
-/// The point of the skin with which a point of the lining moves: the edge of the lip where it
-/// begins; deep in the mouth, the point itself.
+/// The point of the skin with which a point of the lining moves: the nearest one of its lip's edge;
+/// deep in the mouth, the point itself. `to_edge_mm`: along the surface.
 Vector3d carried_lining(const Vector3d& p, const Vector3d& edge, double to_edge_mm) {
   constexpr double of_lip_mm = 8, fade_mm = 12;
   return edge + smooth_step((to_edge_mm - of_lip_mm) / fade_mm) * (p - edge);
