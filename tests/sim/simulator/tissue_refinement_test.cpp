@@ -18,7 +18,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// The face with the mouth opened. Four degrees lower the incisors by about 6 mm, sixteen by 25 mm.
+/// The face with the mouth opened. Four degrees lower the incisors by about 6 mm, sixteen by 22 mm.
 std::vector<Eigen::Vector3f> opened_face(const Case& patient, int surface_nodes, TissueBond bond,
                                          int target_nodes, int most_degrees = 4) {
   const auto model =
