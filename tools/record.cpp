@@ -69,10 +69,10 @@ struct LookNotes {
   std::string life, lids;
 };
 
-LookNotes look_notes(const std::optional<PicturePlan>& plan, const Case& patient, bool lids_close) {
+LookNotes look_notes(const std::optional<PicturePlan>& plan, const Case& patient, bool lids_move) {
   if (!plan) return {};
   return {.life = plan->settings.life ? life_note(patient.parts, plan->settings) : "",
-          .lids = lids_close ? lids_note(patient.parts) : ""};
+          .lids = lids_move ? lids_note(patient.parts) : ""};
 }
 
 /// The report with the metadata of its pictures.
@@ -249,10 +249,10 @@ int run_record(const RecordOptions& options, const CommonOptions& common) {
                                                         options.motion.respect_contact)});
   std::optional<Interruption> interruption;
   if (options.pictures) interruption.emplace(pictures_stay(options));
-  bool lids_close = false;
+  bool lids_move = false;
   for (int i = 0; i < times.count; ++i) {
     FrameState frame = playback.at(times[i]);
-    lids_close |= frame.lids.any();
+    lids_move |= frame.lids.any();
     const auto done = [&](int number, const FrameState& drawn) {
       trace.add(number, drawn);
       report.add(drawn);
@@ -272,7 +272,7 @@ int run_record(const RecordOptions& options, const CommonOptions& common) {
   const ExpressionMeasures expression = report.expression();
   if (!expression.findings.empty())
     json = with_expression(json, options.out, expression, before ? &*before : nullptr);
-  const LookNotes looks_alone = look_notes(plan, scene.patient, lids_close);
+  const LookNotes looks_alone = look_notes(plan, scene.patient, lids_move);
   if (pictures) json = with_pictures(json, pictures->facts(), looks_alone);
   write_file(options.out / "report.json", json);
   if (motion.muscles) write_file(options.out / "excitations.csv", excitations_csv(motion));

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "engine/mesh/topology.h"
+#include "engine/mesh/triangle_tree.h"
 #include "render/face/lashes.h"
 
 namespace condyle {
@@ -20,6 +21,9 @@ constexpr float uneven_mm = 1.5f;                  // of its surface: the cornea
 constexpr float iris_mm = 5.5f;                    // radius
 constexpr float dark = 0.12f;                      // of a pupil, largest of the channels
 constexpr double seen_mm = 700;                    // distance of the point that is looked at
+// Roots of lashes: within this many radii of an eyeball's centre, and this near to the skin.
+constexpr float beside_eye = 1.5f, off_skin_mm = 1;
+constexpr float visible_mm = 0.02f;
 const Vector3f ahead(0, -1, 0);
 
 /// Vertices of the triangles by the component they are in.
@@ -117,14 +121,53 @@ LivingEyes::LivingEyes(const TriMesh& mesh) {
   }
 }
 
-void LivingEyes::grow_from(std::span<const UpperLid> upper, std::span<const LowerLid> lower) {
+void LivingEyes::root_lashes(std::span<const UpperLid> lids, std::span<const Vector3f> rest,
+                             std::span<const Eigen::Vector3i> triangles) {
+  std::vector<Eigen::Vector3i> near;
+  const auto beside = [&](const Vector3f& p, std::size_t lid) {
+    return (p - lids[lid].eyeball().centre).norm() < beside_eye * lids[lid].eyeball().radius;
+  };
+  TriMesh skin;
+  for (const auto& t : triangles)
+    for (std::size_t lid = 0; lid < lids.size(); ++lid)
+      if (beside(rest[static_cast<std::size_t>(t[0])], lid)) {
+        near.push_back(t);
+        for (const int v : t)
+          skin.vertices.push_back(rest[static_cast<std::size_t>(v)].cast<double>());
+        const int last = static_cast<int>(skin.vertices.size());
+        skin.triangles.emplace_back(last - 3, last - 2, last - 1);
+        break;
+      }
+  if (near.empty()) return;
+  const TriangleTree tree(skin);
   for (Lash& lash : lashes_)
-    for (std::size_t i = 0; i < upper.size() && !lash.lid; ++i) {
-      const Eyeball& ball = upper[i].eyeball();
-      if ((lash.root - ball.centre).norm() >= 1.5f * ball.radius) continue;
-      lash.upper = upper[i].is_above(lash.root);
-      if (lash.upper || lower[i].grows(lash.root)) lash.lid = i;
+    for (std::size_t lid = 0; lid < lids.size() && !lash.lid; ++lid) {
+      if (!beside(lash.root, lid)) continue;
+      const SurfacePoint root = tree.nearest(lash.root.cast<double>(), off_skin_mm);
+      if (root.triangle < 0) continue;
+      lash.lid = lid;
+      const auto& t = near[static_cast<std::size_t>(root.triangle)];
+      for (int k = 0; k < 3; ++k) {
+        lash.skin[static_cast<std::size_t>(k)] = t[k];
+        lash.skin_rest[static_cast<std::size_t>(k)] = rest[static_cast<std::size_t>(t[k])];
+        lash.weight[k] = static_cast<float>(root.barycentric[k]);
+      }
     }
+}
+
+std::vector<Vector3f> LivingEyes::root_shifts(std::span<const Vector3f> face) const {
+  std::vector<Vector3f> shifts;
+  float farthest = 0;
+  for (const Lash& lash : lashes_) {
+    Vector3f shift = Vector3f::Zero();
+    for (std::size_t k = 0; lash.lid && k < 3; ++k)
+      shift += lash.weight[static_cast<int>(k)] *
+               (face[static_cast<std::size_t>(lash.skin[k])] - lash.skin_rest[k]);
+    farthest = std::max(farthest, shift.norm());
+    shifts.push_back(shift);
+  }
+  if (farthest < visible_mm) shifts.clear();
+  return shifts;
 }
 
 Vector3f LivingEyes::gaze_of(std::size_t eyeball, const LifeSigns& signs) const {
@@ -164,14 +207,18 @@ void LivingEyes::move(const LifeSigns& signs, std::span<Vector3f> places,
   }
 }
 
-void LivingEyes::turn_lashes(const std::function<Turn(const Lash&)>& turn,
+void LivingEyes::move_lashes(std::span<const Vector3f> shifts, std::span<const UpperLid> lids,
                              std::span<Vector3f> places, std::span<Vector3f> normals) const {
-  for (const Lash& lash : lashes_) {
+  for (std::size_t i = 0; i < shifts.size(); ++i) {
+    const Lash& lash = lashes_[i];
     if (!lash.lid) continue;
-    const auto [R, about] = turn(lash);
+    const UpperLid& lid = lids[*lash.lid];
+    const auto up = [&](const Vector3f& p) { return lid.place_of(p.cast<double>()).up; };
+    const Vector3f to = lash.root + shifts[i];
+    const Eigen::Matrix3f R = lid.turned(up(to) - up(lash.root));
     for (const int v : lash.vertices) {
       Vector3f& p = places[static_cast<std::size_t>(v)];
-      p = about + R * (p - about);
+      p = to + R * (p - lash.root);
       normals[static_cast<std::size_t>(v)] = R * normals[static_cast<std::size_t>(v)];
     }
   }

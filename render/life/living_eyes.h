@@ -1,14 +1,13 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <functional>
+#include <array>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "engine/mesh/tri_mesh.h"
 #include "render/life/life_signs.h"
-#include "render/life/lower_lid.h"
 #include "render/life/upper_lid.h"
 
 namespace condyle {
@@ -22,32 +21,34 @@ class LivingEyes {
 
   /// Round closed pieces of the size of an eyeball; none where eyes are shells or flat.
   const std::vector<Eyeball>& eyeballs() const { return eyeballs_; }
-  /// A lash at rest.
-  struct Lash {
-    std::vector<int> vertices;
-    Eigen::Vector3f root;
-    std::optional<std::size_t> lid = {};  // index of the lids that it grows from; none: it stays
-    bool upper = true;
-  };
-  /// A rotation about a centre.
-  struct Turn {
-    Eigen::Matrix3f R;
-    Eigen::Vector3f about;
-  };
-  /// Gives the lashes to the lids: each to one whose eyeball it is next to; others stay. upper,
-  /// lower: of the same eyes.
-  void grow_from(std::span<const UpperLid> upper, std::span<const LowerLid> lower);
+  /// Roots the lashes in the skin beside the eyeballs of lids; those with no skin beside them stay.
+  /// rest, triangles: of the face.
+  void root_lashes(std::span<const UpperLid> lids, std::span<const Eigen::Vector3f> rest,
+                   std::span<const Eigen::Vector3i> triangles);
 
   /// Unit gaze of an eyeball.
   Eigen::Vector3f gaze_of(std::size_t eyeball, const LifeSigns& signs) const;
   /// Turns the eyeballs, given at rest; normals: unit, one per vertex.
   void move(const LifeSigns& signs, std::span<Eigen::Vector3f> places,
             std::span<Eigen::Vector3f> normals) const;
-  /// Turns the lashes that grow from lids, given at rest.
-  void turn_lashes(const std::function<Turn(const Lash&)>& turn, std::span<Eigen::Vector3f> places,
-                   std::span<Eigen::Vector3f> normals) const;
+  /// By how much the present face has moved the root of each lash, mm; empty where none has moved
+  /// visibly.
+  std::vector<Eigen::Vector3f> root_shifts(std::span<const Eigen::Vector3f> face) const;
+  /// Moves the lashes, given at rest, with their roots, and turns them about these as the lids turn
+  /// about the eyeballs. shifts: of root_shifts, or empty.
+  void move_lashes(std::span<const Eigen::Vector3f> shifts, std::span<const UpperLid> lids,
+                   std::span<Eigen::Vector3f> places, std::span<Eigen::Vector3f> normals) const;
 
  private:
+  /// A lash at rest, and the triangle of the skin that it grows from.
+  struct Lash {
+    std::vector<int> vertices;
+    Eigen::Vector3f root;
+    std::optional<std::size_t> lid = {};  // beside whose eyeball; none: it stays
+    std::array<int, 3> skin = {};
+    std::array<Eigen::Vector3f, 3> skin_rest = {};
+    Eigen::Vector3f weight = Eigen::Vector3f::Zero();
+  };
   std::vector<Eyeball> eyeballs_;
   std::vector<float> pupils_;         // radius at rest, mm; 0: without
   std::vector<std::vector<int>> on_;  // vertices of each eyeball

@@ -33,7 +33,7 @@ LivingFace::LivingFace(std::span<const Part> parts, std::span<const Vector3f> re
   }
   find_lids(rest, triangles);
   for (auto& eyes : eyes_)
-    if (eyes) eyes->grow_from(lids_, lower_lids_);
+    if (eyes) eyes->root_lashes(lids_, rest, triangles);
   find_neck(parts, rest);
   if (nose_tip) find_nostrils(rest, nose_tip->cast<float>());
 }
@@ -110,8 +110,8 @@ std::vector<LidPose> LivingFace::move_lids(const LifeSigns& signs, bool raises,
       pose.raised = lower_lids_[i].raised(places);
       lower_lids_[i].move(pose.raised, gaze, places);
     }
-    pose.widening = lids_[i].move(pose.lowered, gaze, places);
-    poses.push_back(std::move(pose));
+    lids_[i].move(pose.lowered, gaze, places);
+    poses.push_back(pose);
   }
   return poses;
 }
@@ -119,10 +119,10 @@ std::vector<LidPose> LivingFace::move_lids(const LifeSigns& signs, bool raises,
 LivingFace::Moved LivingFace::move_face(const Life& life, const LifeSigns& signs, bool raises,
                                         std::span<Vector3f> places) const {
   Moved moved;
-  moved.lids = move_lids(signs, raises, places);
+  const std::vector<LidPose> lids = move_lids(signs, raises, places);
+  moved.lashes = lash_shifts(places);
   if (signs.alive) breathe(life, signs, places);
-  for (std::size_t i = 0; i < lids_.size(); ++i)
-    lids_[i].shade(moved.lids[i].lowered, moved.shades);
+  for (std::size_t i = 0; i < lids_.size(); ++i) lids_[i].shade(lids[i].lowered, moved.shades);
   return moved;
 }
 
@@ -138,18 +138,19 @@ void LivingFace::breathe(const Life& life, const LifeSigns& signs,
     places[static_cast<std::size_t>(member.vertex)] += breath * member.breathes;
 }
 
-void LivingFace::move_eyes(std::size_t part, const LifeSigns& signs, std::span<const LidPose> lids,
-                           std::span<Vector3f> places, std::span<Vector3f> normals) const {
+std::vector<std::vector<Vector3f>> LivingFace::lash_shifts(std::span<const Vector3f> places) const {
+  std::vector<std::vector<Vector3f>> shifts(eyes_.size());
+  for (std::size_t i = 0; i < eyes_.size(); ++i)
+    if (eyes_[i]) shifts[i] = eyes_[i]->root_shifts(places);
+  return shifts;
+}
+
+void LivingFace::move_eyes(std::size_t part, const LifeSigns& signs,
+                           std::span<const Vector3f> lashes, std::span<Vector3f> places,
+                           std::span<Vector3f> normals) const {
   if (!has_eyes(part)) return;
   eyes_[part]->move(signs, places, normals);
-  eyes_[part]->turn_lashes(
-      [&](const LivingEyes::Lash& lash) -> LivingEyes::Turn {
-        const std::size_t lid = *lash.lid;
-        return {lash.upper ? lids_[lid].turn_at(lash.root, lids[lid])
-                           : lower_lids_[lid].turn_at(lash.root, lids[lid].raised),
-                lids_[lid].eyeball().centre};
-      },
-      places, normals);
+  eyes_[part]->move_lashes(lashes, lids_, places, normals);
 }
 
 std::string LivingFace::lids_shortfall() const {

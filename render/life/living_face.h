@@ -25,8 +25,8 @@ class LivingFace {
 
   /// Results of move_face besides the vertices.
   struct Moved {
-    std::vector<SkinFolds::Shade> shades = {};  // of the lids' creases
-    std::vector<LidPose> lids = {};             // of each eye that has them
+    std::vector<SkinFolds::Shade> shades = {};              // of the lids' creases
+    std::vector<std::vector<Eigen::Vector3f>> lashes = {};  // of each part: LivingEyes::root_shifts
   };
   /// Moves the present vertices of the drawn face. raises: lower lids, with the cheeks below them.
   Moved move_face(const Life& life, const LifeSigns& signs, bool raises,
@@ -34,12 +34,13 @@ class LivingFace {
   /// Moves the vertices of the lids alone: first the lower ones, which the upper ones meet.
   std::vector<LidPose> move_lids(const LifeSigns& signs, bool raises,
                                  std::span<Eigen::Vector3f> places) const;
-  /// Number of eyes that have lids.
-  std::size_t lid_count() const { return lids_.size(); }
   /// Whether move_eyes moves any vertex of the part with this number.
   bool has_eyes(std::size_t part) const { return part < eyes_.size() && eyes_[part].has_value(); }
-  /// Moves vertices and normals of a part, given at rest. lids: as moved.
-  void move_eyes(std::size_t part, const LifeSigns& signs, std::span<const LidPose> lids,
+  /// By how much the present face has moved the roots of the lashes of each part.
+  std::vector<std::vector<Eigen::Vector3f>> lash_shifts(
+      std::span<const Eigen::Vector3f> places) const;
+  /// Moves vertices and normals of a part, given at rest. lashes: shifts of its own.
+  void move_eyes(std::size_t part, const LifeSigns& signs, std::span<const Eigen::Vector3f> lashes,
                  std::span<Eigen::Vector3f> places, std::span<Eigen::Vector3f> normals) const;
 
   /// What of it the patient lacks, as text; empty for nothing.

@@ -74,14 +74,4 @@ void LowerLid::move(float raised, const Vector3f& gaze, std::span<Vector3f> plac
   }
 }
 
-Eigen::Matrix3f LowerLid::turn_at(const Vector3f& point, float raised) const {
-  const auto gap = above_.gap_at(above_.place_of(point.cast<double>()).along);
-  return above_.turned(raised * smooth_step((gap.top - gap.bottom) / above_.widest()));
-}
-
-bool LowerLid::grows(const Vector3f& point) const {
-  const auto gap = above_.gap_at(above_.place_of(point.cast<double>()).along);
-  return gap.top > gap.bottom && !above_.is_above(point);
-}
-
 }  // namespace condyle

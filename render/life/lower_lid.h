@@ -20,10 +20,6 @@ class LowerLid {
   float raised(std::span<const Eigen::Vector3f> places) const;
   /// Raises the lid; no vertex enters the eyeball. gaze: unit.
   void move(float raised, const Eigen::Vector3f& gaze, std::span<Eigen::Vector3f> places) const;
-  /// Rotation about the eyeball's centre of what grows from the edge at this point.
-  Eigen::Matrix3f turn_at(const Eigen::Vector3f& point, float raised) const;
-  /// Whether a point is on the edge of this lid at rest.
-  bool grows(const Eigen::Vector3f& point) const;
 
  private:
   struct Member {

@@ -39,9 +39,8 @@ constexpr double measured_every = 1.2, measured_over = 0.9;  // mm
 constexpr int measured = 25;
 constexpr auto columns = static_cast<std::size_t>(2 * farthest_mm / step_mm) + 1;
 
-/// Interpolates what was measured along the axis; 0 without it.
+/// Interpolates what was measured along the axis.
 float widened(std::span<const float> measures, float along) {
-  if (measures.empty()) return 0;
   const float at =
       std::clamp(along / static_cast<float>(measured_every) + measured / 2, 0.f, measured - 1.001f);
   const auto i = static_cast<std::size_t>(at);
@@ -309,13 +308,13 @@ std::vector<float> UpperLid::widening(std::span<const Vector3f> places) const {
 double UpperLid::lowered(const LifeSigns& signs) const {
   const double closure = side_ == FaceSide::left ? signs.lids.left : signs.lids.right;
   const double open = signs.alive ? staring_ - lid_per_gaze * signs.gaze_up / widest_ : 0;
-  return std::clamp(open + closure * (1 - open), highest, 1.0);
+  const double to = closure > 0 ? 1 : highest;
+  return std::clamp(open + std::abs(closure) * (to - open), highest, 1.0);
 }
 
-std::vector<float> UpperLid::move(double lowered, const Vector3f& gaze,
-                                  std::span<Vector3f> places) const {
-  if (lowered == 0) return {};
-  std::vector<float> wider = widening(places);
+void UpperLid::move(double lowered, const Vector3f& gaze, std::span<Vector3f> places) const {
+  if (lowered == 0) return;
+  const std::vector<float> wider = widening(places);
   const auto creased = static_cast<float>(smooth_step(2 * lowered));
   float farthest = eyeball_.radius;
   for (const float reach : eyeball_.profile) farthest = std::max(farthest, reach);
@@ -326,7 +325,6 @@ std::vector<float> UpperLid::move(double lowered, const Vector3f& gaze,
     const float room = std::max(0.f, (p - eyeball_.centre).norm() - farthest - clear_mm);
     p = slid(p, angle, gaze, creased * std::max(raised, -room / 2));
   }
-  return wider;
 }
 
 Vector3f UpperLid::slid(const Vector3f& p, float angle, const Vector3f& gaze, float off) const {
@@ -346,18 +344,6 @@ void UpperLid::shade(double lowered, std::vector<SkinFolds::Shade>& shades) cons
   for (const Member& of : members_)
     if (of.crease > 0.01f)
       shades.push_back({of.vertex, static_cast<float>(1 - crease_shade * creased * of.crease)});
-}
-
-bool UpperLid::is_above(const Vector3f& point) const {
-  const Place at = place_of(point.cast<double>());
-  const Gap gap = gap_at(at.along);
-  return gap.top > gap.bottom && at.up > (gap.bottom + gap.top) / 2;
-}
-
-Eigen::Matrix3f UpperLid::turn_at(const Vector3f& point, const LidPose& lids) const {
-  const double along = place_of(point.cast<double>()).along;
-  return turned(-lids.lowered *
-                (way_at(along) + widened(lids.widening, static_cast<float>(along))));
 }
 
 Eigen::Matrix3f UpperLid::turned(double angle) const {

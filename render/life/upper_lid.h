@@ -29,9 +29,8 @@ enum class FaceSide { left, right };
 
 /// Where the lids of one eye are.
 struct LidPose {
-  double lowered = 0;                // of the upper one: fraction of the way to the lower one
-  std::vector<float> widening = {};  // of the opening at rest, as UpperLid::move found it
-  float raised = 0;                  // of the lower one, rad
+  double lowered = 0;  // of the upper one: fraction of the way to the lower one
+  float raised = 0;    // of the lower one, rad
 };
 
 /// The upper lid of one eye, which slides on the eyeball: it turns about the line between the
@@ -68,22 +67,16 @@ class UpperLid {
   /// Rotation upward about the axis, rad.
   Eigen::Matrix3f turned(double angle) const;
 
-  /// Fraction of the way to the lower lid by the closure of this side. A living lid follows the
-  /// gaze, and is lowered a little where it shows all of the iris: the eye would stare.
+  /// Fraction of the way to the lower lid by the closure of this side, below 0 above rest. A living
+  /// lid follows the gaze, and is lowered a little where it shows all of the iris: the eye would
+  /// stare.
   double lowered(const LifeSigns& signs) const;
 
   /// Moves the lid's vertices by a fraction of the way to the lower lid, from where the face's
-  /// expression has both lids; none enters the eyeball. gaze: unit. Returns by how much more than
-  /// at rest the lids were apart, rad, along the axis; empty where nothing moves.
-  std::vector<float> move(double lowered, const Eigen::Vector3f& gaze,
-                          std::span<Eigen::Vector3f> places) const;
+  /// expression has both lids; none enters the eyeball. gaze: unit.
+  void move(double lowered, const Eigen::Vector3f& gaze, std::span<Eigen::Vector3f> places) const;
   /// Adds the shade of the crease above the tarsus, which a lowered lid has.
   void shade(double lowered, std::vector<SkinFolds::Shade>& shades) const;
-
-  /// Whether a point on a lid's edge at rest is on the upper lid.
-  bool is_above(const Eigen::Vector3f& point) const;
-  /// Rotation about the eyeball's centre of what grows from the edge at this point.
-  Eigen::Matrix3f turn_at(const Eigen::Vector3f& point, const LidPose& lids) const;
 
  private:
   struct Member {

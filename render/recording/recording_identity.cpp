@@ -50,9 +50,10 @@ std::uint64_t motion_hash(const Motion& motion, std::span<const double> times, d
     hash = hash_bytes(pose.R.coeffs().data(), 4 * sizeof(double), hash);
     hash = hash_bytes(pose.t.data(), 3 * sizeof(double), hash);
     if (!motion.expression) return;
-    const auto& [muscles, lids] = motion.expression(time_s);
-    hash = hash_bytes(muscles.data(), muscles.size() * sizeof(double), hash);
-    if (!lids.any()) return;
+    const FaceExcitation excitation = motion.expression(time_s);
+    hash = hash_bytes(excitation.muscles.data(), excitation.muscles.size() * sizeof(double), hash);
+    if (!excitation.moves_lids()) return;
+    const LidClosure lids = excitation.closure();
     const double closed[] = {lids.left, lids.right};
     hash = hash_bytes(closed, sizeof closed, hash);
   };

@@ -56,7 +56,7 @@ std::string lids_note(std::span<const Part> parts) {
   const LivingFace living(parts, float_positions(mesh), mesh.triangles, std::nullopt);
   const std::string lacks = living.lids_shortfall(), side = living.open_side();
   if (lacks.empty()) return {};
-  return "expressions do not close the " + (side.empty() ? "" : side + " ") + "lids: " + lacks;
+  return "expressions do not move the " + (side.empty() ? "" : side + " ") + "lids: " + lacks;
 }
 
 void FaceShape::place(std::vector<Eigen::Vector3f> places) {
@@ -74,21 +74,22 @@ void FaceShape::send(std::span<const Part> parts, std::span<Drawable> drawables,
   if (shows_life(parts, settings)) {
     look.life = settings.life;
     look.signs = life_signs(moment.time_s, moment.X_CM);
-    look.signs->lids = max_closure(look.life->lids * look.signs->lids, moment.lids);
+    look.signs->lids = with_blink(moment.lids, look.life->lids * look.signs->lids);
   } else if (moment.lids.any()) {
     look.signs = LifeSigns{.lids = moment.lids, .alive = false};
   }
   if (sent_ ? *sent_ == look : places_.empty() && !look.signs) return;
   const TriMesh& rest = face->part->mesh;
   Drawable::FaceLook drawn{.folded = look.folds};
-  const bool moves_lids = look.signs.has_value(), raises = look.folds && !places_.empty();
+  const bool moves_lids = look.signs.has_value(), moved_face = !places_.empty();
   const LifeSigns signs = look.signs.value_or(LifeSigns{.alive = false});
-  std::vector<LidPose> lids;
-  if (moves_lids || raises) {
+  std::vector<std::vector<Eigen::Vector3f>> lashes(parts.size());
+  if (moves_lids || moved_face) {
     const LivingFace& own = living(parts, *face, look);
     drawn.alive = [&](std::span<Eigen::Vector3f> places) {
-      auto moved = own.move_face(look.life.value_or(Life{}), signs, raises, places);
-      lids = std::move(moved.lids);
+      auto moved =
+          own.move_face(look.life.value_or(Life{}), signs, look.folds && moved_face, places);
+      lashes = std::move(moved.lashes);
       return std::move(moved.shades);
     };
   }
@@ -98,12 +99,9 @@ void FaceShape::send(std::span<const Part> parts, std::span<Drawable> drawables,
       living_->move_lids(signs, false, places);
     };
   face->move_face(places_.empty() ? float_positions(rest) : places_, drawn, normals_);
-  const bool moves_eyes = moves_lids || std::any_of(lids.begin(), lids.end(),
-                                                    [](const LidPose& p) { return p.raised > 0; });
-  if (moves_eyes || eyes_moved_) {
-    lids.resize(living_->lid_count());
-    send_eyes(drawables, signs, lids);
-  }
+  const bool moves_eyes = moves_lids || std::any_of(lashes.begin(), lashes.end(),
+                                                    [](const auto& of) { return !of.empty(); });
+  if (moves_eyes || eyes_moved_) send_eyes(drawables, signs, lashes);
   eyes_moved_ = moves_eyes;
   sent_ = look;
 }
@@ -117,7 +115,7 @@ LivingFace& FaceShape::living(std::span<const Part> parts, const Drawable& face,
 }
 
 void FaceShape::send_eyes(std::span<Drawable> drawables, const LifeSigns& signs,
-                          std::span<const LidPose> lids) {
+                          std::span<const std::vector<Eigen::Vector3f>> lashes) {
   ++eyes_number_;
   for (std::size_t i = 0; i < drawables.size(); ++i) {
     if (!living_->has_eyes(i)) continue;
@@ -125,7 +123,7 @@ void FaceShape::send_eyes(std::span<Drawable> drawables, const LifeSigns& signs,
     auto& [places, normals] = eyes_[i];
     places = float_positions(mesh);
     vertex_normals(places, mesh.triangles, normals);
-    living_->move_eyes(i, signs, lids, places, normals);
+    living_->move_eyes(i, signs, lashes[i], places, normals);
     drawables[i].mesh.send_shape(places, normals);
   }
 }

@@ -22,8 +22,8 @@ bool shows_life(std::span<const Part> parts, const PictureSettings& settings);
 /// For a report of pictures with life switched on: that it is for looks alone, and what of it is
 /// not shown.
 std::string life_note(std::span<const Part> parts, const PictureSettings& settings);
-/// Why an expression does not close the lids of the patient, or those of one eye, as a sentence;
-/// empty: it closes both.
+/// Why an expression does not move the lids of the patient, or those of one eye, as a sentence;
+/// empty: it moves both.
 std::string lids_note(std::span<const Part> parts);
 
 /// Vertices of a mesh.
@@ -59,7 +59,7 @@ class FaceShape {
   };
   LivingFace& living(std::span<const Part> parts, const Drawable& face, const Look& look);
   void send_eyes(std::span<Drawable> drawables, const LifeSigns& signs,
-                 std::span<const LidPose> lids);
+                 std::span<const std::vector<Eigen::Vector3f>> lashes);
 
   std::vector<Eigen::Vector3f> places_;      // empty: at rest
   std::optional<Look> sent_;                 // none: the places were not sent yet

@@ -283,14 +283,14 @@ WindowScene ViewSession::scene_of_patient() const {
 std::string ViewSession::lacking_for_face() {
   if (!state_.patient->scene.tissue) return {};
   std::string lacking;
-  bool closes_lids = state_.motion && motion_closes_lids_;
+  bool moves_lids = state_.motion && motion_moves_lids_;
   const auto& expression = state_.front_end.view().expression;
   if (!expression.empty() && !state_.scene.expressions.empty()) {
     const auto& muscles = face_muscles_of(*state_.patient->scene.tissue);
     lacking = missing_kinds(expression, muscles);
-    closes_lids |= excitation_of(expression, muscles).lids.any();
+    moves_lids |= excitation_of(expression, muscles).moves_lids();
   }
-  if (!closes_lids) return lacking;
+  if (!moves_lids) return lacking;
   if (lids_note_.of.lock() != state_.patient)
     lids_note_ = {state_.patient, lids_note(state_.patient->scene.patient.parts)};
   if (!lacking.empty() && !lids_note_.text.empty()) lacking += "; ";
@@ -374,7 +374,7 @@ void ViewSession::take_motion() {
   state_.try_or_report("Cannot make this motion", [&] {
     auto taken = moving_.take();
     motion_lifts_brows_ = taken && motion_moves_upper_face((*taken)->choice.spec);
-    motion_closes_lids_ = taken && motion_closes_lids((*taken)->choice.spec);
+    motion_moves_lids_ = taken && motion_moves_lids((*taken)->choice.spec);
     made = std::move(taken);
   });
   if (!made) return keep_motion();

@@ -122,7 +122,7 @@ class ViewSession {
   };
   LidsNote lids_note_;               // from the first slider or motion that closes lids on
   bool motion_lifts_brows_ = false;  // the present motion, see TissueSettings::upper_face
-  bool motion_closes_lids_ = false;
+  bool motion_moves_lids_ = false;
   std::shared_ptr<const SessionPatient> face_asked_for_;  // when the upper face was added
   Job<bool> readying_;                                    // bones to slide
   Job<Saved> saving_;

@@ -127,8 +127,8 @@ FrameState frame_of_bytes(std::string_view bytes, const std::filesystem::path& f
   for (double& ms : frame.times.ms) reader(ms);
   for (double* const closure : {&frame.lids.left, &frame.lids.right}) {
     reader(*closure);
-    if (!(*closure >= 0 && *closure <= 1))
-      reader.refuse("a closure of lids of " + std::to_string(*closure) + " is not within 0 to 1");
+    if (!(*closure >= -1 && *closure <= 1))
+      reader.refuse("a closure of lids of " + std::to_string(*closure) + " is not within -1 to 1");
   }
   visit_frame(frame, reader);
   std::uint64_t written = 0;

@@ -325,9 +325,9 @@ bool motion_moves_upper_face(const std::string& name) {
   });
 }
 
-bool motion_closes_lids(const std::string& name) {
+bool motion_moves_lids(const std::string& name) {
   return any_level_of_words(name, [](const ExpressionLevel& level) {
-    return excitation_of({&level, 1}, {}).lids.any();
+    return excitation_of({&level, 1}, {}).moves_lids();
   });
 }
 

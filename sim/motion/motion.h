@@ -87,8 +87,8 @@ const std::vector<std::string>& builtin_motions();
 /// a motion that muscles follow (inverse:MOTION). false for what is no motion in words. throws:
 /// InputError as make_motion() for wrong words.
 bool motion_moves_upper_face(const std::string& name);
-/// Whether expressions or blinks in its words close lids; as motion_moves_upper_face().
-bool motion_closes_lids(const std::string& name);
+/// Whether expressions or blinks in its words move lids; as motion_moves_upper_face().
+bool motion_moves_lids(const std::string& name);
 
 /// Checks what can be wrong with a motion without a patient: its name, words, file and settings.
 /// throws: InputError as make_motion().

@@ -18,7 +18,8 @@ namespace {
 
 constexpr double held_until_s = 1;
 constexpr std::size_t max_expression_bytes = std::size_t{16} << 20;
-constexpr const char* lids_are_drawn = "lid closure is drawn only; no measurement depends on it";
+constexpr const char* lids_are_drawn =
+    "the motion of the upper lids is drawn only; no measurement depends on it";
 
 std::filesystem::path file_of(const std::string& spec) { return spec; }
 
@@ -77,8 +78,8 @@ std::optional<ExpressionLevel> level_of_column(std::string_view column) {
 std::optional<FaceExcitation> excited_by(std::string_view column,
                                          std::span<const FaceMuscle> muscles) {
   FaceExcitation excited{.muscles = std::vector<double>(muscles.size(), 0.0)};
-  if (const auto [name, left, right] = sided_name(column); name == lid_closer) {
-    excited.lids = {left ? 1.0 : 0.0, right ? 1.0 : 0.0};
+  if (const auto [name, left, right] = sided_name(column); is_lid_muscle(name)) {
+    (name == lid_closer ? excited.lids : excited.raise) = {left ? 1.0 : 0.0, right ? 1.0 : 0.0};
     return excited;
   }
   bool found = false;
@@ -97,13 +98,14 @@ std::optional<FaceExcitation> excited_by(std::string_view column,
                                 const std::string& column, std::span<const FaceMuscle> muscles) {
   std::string known;
   for (const FaceMuscle& muscle : muscles)
-    if (sided_name(muscle.name).name != lid_closer) known += muscle.name + ", ";
+    if (!is_lid_muscle(sided_name(muscle.name).name)) known += muscle.name + ", ";
   throw InputError(
       file, header,
       fmt::format("\"{}\" is not a muscle of the face, expression or action unit; valid ones are "
-                  "muscles (without left_ or right_: both sides): {}left_{}, right_{}; "
-                  "expressions, also with left_ or right_: {}",
-                  shortened(column), known, lid_closer, lid_closer, list_expressions()));
+                  "muscles (without left_ or right_: both sides): {}left_{}, right_{}, left_{}, "
+                  "right_{}; expressions, also with left_ or right_: {}",
+                  shortened(column), known, lid_closer, lid_closer, lid_raiser, lid_raiser,
+                  list_expressions()));
 }
 
 /// Adds a level to those of the same name.
@@ -170,12 +172,13 @@ Expression expression_of_file(const std::string& spec, std::span<const FaceMuscl
     columns.push_back(
         {ExcitationCurve(times, std::move(values), Interpolation::smooth), std::move(*excited)});
   }
-  const bool closes_lids = std::any_of(
-      columns.begin(), columns.end(), [](const auto& column) { return column.excited.lids.any(); });
+  const bool moves_lids = std::any_of(columns.begin(), columns.end(), [](const auto& column) {
+    return column.excited.moves_lids();
+  });
   std::vector<std::string> notes;
   if (std::string missing = missing_kinds(levels, muscles); !missing.empty())
     notes.push_back(std::move(missing));
-  if (closes_lids) notes.emplace_back(lids_are_drawn);
+  if (moves_lids) notes.emplace_back(lids_are_drawn);
   return {.name = file.filename().string(),
           .duration_s = times.back(),
           .at = [columns = std::move(columns), count = muscles.size()](
@@ -197,7 +200,8 @@ Expression expression_through(std::string name, std::span<const ExpressionKey> k
     times.push_back(key.time_s);
     values.push_back(excitation_of(key.levels, muscles));
   }
-  if (std::any_of(values.begin(), values.end(), [](const auto& value) { return value.lids.any(); }))
+  if (std::any_of(values.begin(), values.end(),
+                  [](const FaceExcitation& value) { return value.moves_lids(); }))
     notes.emplace_back(lids_are_drawn);
   const double end_s = times.back();
   return {.name = std::move(name),

@@ -14,8 +14,10 @@ namespace {
 FaceExcitation limited(FaceExcitation excitation) {
   const auto limit = [](double& value) { value = std::clamp(value, 0.0, 1.0); };
   std::ranges::for_each(excitation.muscles, limit);
-  limit(excitation.lids.left);
-  limit(excitation.lids.right);
+  for (LidClosure* of : {&excitation.lids, &excitation.raise}) {
+    limit(of->left);
+    limit(of->right);
+  }
   return excitation;
 }
 
@@ -44,7 +46,9 @@ const std::vector<NamedExpression>& named_expressions() {
         {"mentalis", 0.3},
         {"frontalis_medial", 0.6},
         {"corrugator", 0.4}}},
-      {"surprise", "", {{"frontalis_medial", 1}, {"frontalis_lateral", 1}}},
+      {"surprise",
+       "",
+       {{"frontalis_medial", 1}, {"frontalis_lateral", 1}, {std::string(lid_raiser), 0.7}}},
       {"disgust",
        "",
        {{"levator_labii_alaeque_nasi", 0.8}, {"levator_labii_superioris", 0.6}, {"procerus", 0.4}}},
@@ -70,6 +74,7 @@ const std::vector<NamedExpression>& named_expressions() {
       {"AU1", "inner brow raiser", {{"frontalis_medial", 1}}},
       {"AU2", "outer brow raiser", {{"frontalis_lateral", 1}}},
       {"AU4", "brow lowerer", {{"corrugator", 1}, {"procerus", 1}}},
+      {"AU5", "upper lid raiser", {{std::string(lid_raiser), 1}}},
       {"AU6", "cheek raiser", {{"orbicularis_oculi", 1}, {"orbicularis_oculi_superior", 1}}},
       {"AU9", "nose wrinkler", {{"levator_labii_alaeque_nasi", 1}}},
       {"AU10", "upper lip raiser", {{"levator_labii_superioris", 1}}},
@@ -126,9 +131,10 @@ FaceExcitation excitation_of(std::span<const ExpressionLevel> levels,
     const NamedExpression* expression = find_expression(level.name);
     if (!expression) continue;
     for (const auto& [kind, value] : expression->kinds) {
-      if (kind == lid_closer) {
-        sum.lids.left += value * level.left;
-        sum.lids.right += value * level.right;
+      if (is_lid_muscle(kind)) {
+        LidClosure& lids = kind == lid_closer ? sum.lids : sum.raise;
+        lids.left += value * level.left;
+        lids.right += value * level.right;
         continue;  // also where the case has such a muscle: lids are drawn only
       }
       for (std::size_t m = 0; m < muscles.size(); ++m) {
@@ -153,7 +159,7 @@ std::string missing_kinds(std::span<const ExpressionLevel> levels,
     if (!expression || std::max(level.left, level.right) <= 0) continue;
     bool complete = true;
     for (const auto& of : expression->kinds) {
-      if (of.kind == lid_closer ||
+      if (is_lid_muscle(of.kind) ||
           std::any_of(muscles.begin(), muscles.end(),
                       [&](const FaceMuscle& muscle) { return muscle.kind == of.kind; }))
         continue;
@@ -170,8 +176,10 @@ std::string missing_kinds(std::span<const ExpressionLevel> levels,
 FaceExcitation added_excitations(FaceExcitation a, const FaceExcitation& b) {
   a.muscles.resize(std::max(a.muscles.size(), b.muscles.size()));
   for (std::size_t m = 0; m < b.muscles.size(); ++m) a.muscles[m] += b.muscles[m];
-  a.lids.left += b.lids.left;
-  a.lids.right += b.lids.right;
+  for (LidClosure FaceExcitation::*of : {&FaceExcitation::lids, &FaceExcitation::raise}) {
+    (a.*of).left += (b.*of).left;
+    (a.*of).right += (b.*of).right;
+  }
   return limited(std::move(a));
 }
 
@@ -179,8 +187,10 @@ FaceExcitation between(FaceExcitation a, const FaceExcitation& b, double fractio
   assert(a.muscles.size() == b.muscles.size());
   const auto move = [&](double& from, double to) { from += fraction * (to - from); };
   for (std::size_t m = 0; m < a.muscles.size(); ++m) move(a.muscles[m], b.muscles[m]);
-  move(a.lids.left, b.lids.left);
-  move(a.lids.right, b.lids.right);
+  for (LidClosure FaceExcitation::*of : {&FaceExcitation::lids, &FaceExcitation::raise}) {
+    move((a.*of).left, (b.*of).left);
+    move((a.*of).right, (b.*of).right);
+  }
   return a;
 }
 

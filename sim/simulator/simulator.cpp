@@ -100,7 +100,7 @@ FrameState step(const Scene& scene, const FrameState& previous, const StepInput&
   now.time_s = input.time_s;
   now.X_PB_target = input.X_PB_target;
   now.X_PB_target.resize(scene.patient.bodies.bodies().size());
-  now.lids = input.excitation.lids;
+  now.lids = input.excitation.closure();
   {
     const StageTimer timer(now.times, Stage::contact);
     if (input.obey_contact) {

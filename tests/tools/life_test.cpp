@@ -109,8 +109,10 @@ TEST(LidsOfAnExpression, AreInPicturesAlone) {
   const fs::path open = recorded(wink("open", "AU12:0")),
                  closed = recorded(wink("closed", "AU45", {"--threads", "1"})),
                  left = recorded(wink("left", "AU45:1:left")),
-                 palsied = recorded(wink("palsied", "AU43", {"--weakness", "right:0"}));
+                 palsied = recorded(wink("palsied", "AU43", {"--weakness", "right:0"})),
+                 raised = recorded(wink("raised", "AU5"));
   EXPECT_EQ(measured(open), measured(closed)) << "hashes, too";
+  EXPECT_EQ(measured(open), measured(raised));
   EXPECT_EQ(read_text(open / "expression.csv"), read_text(closed / "expression.csv"));
   const auto last = [](const fs::path& out) {
     return Picture((out / "frames/000002.png").string());
@@ -120,11 +122,12 @@ TEST(LidsOfAnExpression, AreInPicturesAlone) {
   const Region right_half{0, 0, 150, 300}, left_half{150, 0, 150, 300};  // of the patient
   EXPECT_TRUE(unlike(last(open), last(closed), 0.002));
   EXPECT_TRUE(unlike(last(open), last(left), 0.001));
+  EXPECT_TRUE(unlike(last(open), last(raised), 0.001));
   EXPECT_TRUE(alike(last(open), last(left), 0, right_half)) << "one eye stays open";
   EXPECT_TRUE(alike(last(closed), last(left), 0, left_half));
   EXPECT_TRUE(same_bytes(last(palsied), last(left))) << "a palsied lid stays open";
   const auto report = nlohmann::json::parse(read_text(closed / "report.json"));
-  EXPECT_NE(report["motion"]["notes"].dump().find("lid closure is drawn only"), std::string::npos);
+  EXPECT_NE(report["motion"]["notes"].dump().find("upper lids is drawn only"), std::string::npos);
   EXPECT_FALSE(report["pictures"].contains("lids")) << "nothing is missing";
 
   const std::string frame = read_text(closed / "frames/000002.png");

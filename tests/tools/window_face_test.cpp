@@ -204,7 +204,7 @@ TEST_F(WindowSession, NotesSayWhyBrowsDoNotMoveAndWhichMusclesAreMissing) {
   })) << state()["notes"].dump();
   EXPECT_EQ(state()["notes"][0].get<std::string>().find(lacking), 0u) << "the last change is first";
   see("notes");
-  const std::string open = "expressions do not close the lids: no eyeballs were found";
+  const std::string open = "expressions do not move the lids: no eyeballs were found";
   EXPECT_EQ(notes_with(state(), open), 0);
   EXPECT_TRUE(xdotool({"mousemove", px(r[0] + 20), px(r[1] + 40), "click", "--repeat", "60",
                        "--delay", "20", "5"}));
@@ -228,7 +228,7 @@ TEST_F(WindowSession, NotesSayWhyBrowsDoNotMoveAndWhichMusclesAreMissing) {
 TEST_F(WindowSession, ANoteSaysThatABlinkOfTheMotionLeavesTheLidsOpen) {
   write_patient_without_eyes(folder_);
   start({folder_ / "case", "--motion", "blink; hold 1"});
-  const std::string open = "expressions do not close the lids: no eyeballs were found";
+  const std::string open = "expressions do not move the lids: no eyeballs were found";
   EXPECT_TRUE(wait_until([&](const Json& s) { return idle(s) && notes_with(s, open) == 1; }, 120))
       << state()["notes"].dump();
   EXPECT_EQ(state().value("trouble", ""), "");

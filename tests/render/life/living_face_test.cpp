@@ -39,9 +39,11 @@ class LivingPatient : public testing::Test {
     living_.move_face({}, signs, false, places);
     return places;
   }
-  std::vector<LidPose> lids_of(const LifeSigns& signs) const {
+  /// Shifts of the lashes of a part.
+  std::vector<Vector3f> lashes_of(std::size_t part, const LifeSigns& signs) const {
     auto places = rest_;
-    return living_.move_lids(signs, false, places);
+    living_.move_lids(signs, false, places);
+    return living_.lash_shifts(places)[part];
   }
   TriMesh skin_of(const LifeSigns& signs) const {
     TriMesh skin = face_.mesh;
@@ -56,7 +58,7 @@ class LivingPatient : public testing::Test {
     std::vector<Vector3f> normals(balls.size(), Vector3f::UnitZ());
     for (std::size_t i = 0; i < patient().parts.size(); ++i)
       if (&patient().parts[i] == &eyes_)
-        living_.move_eyes(i, signs, lids_of(signs), balls, normals);
+        living_.move_eyes(i, signs, lashes_of(i, signs), balls, normals);
     TriMesh eyes{{}, part_lashes(eyes_.mesh).eyes, {}};
     for (const auto& p : balls) eyes.vertices.push_back(p.cast<double>());
     const TriangleTree skin_tree(skin), eye_tree(eyes);
@@ -110,7 +112,8 @@ TEST_F(LivingPatient, AnExpressionClosesTheEyesOfItsSidesAndMovesNothingElse) {
   auto eyes = eyes_at_rest;
   std::vector<Vector3f> normals(eyes.size(), Vector3f::UnitZ());
   for (std::size_t i = 0; i < patient().parts.size(); ++i)
-    if (&patient().parts[i] == &eyes_) living_.move_eyes(i, wink, lids_of(wink), eyes, normals);
+    if (&patient().parts[i] == &eyes_)
+      living_.move_eyes(i, wink, lashes_of(i, wink), eyes, normals);
   const auto radii = lash_radii(eyes_.mesh);
   int lashes = 0;
   for (std::size_t v = 0; v < eyes.size(); ++v)

@@ -124,30 +124,48 @@ TEST_F(LowerLidTest, LashesStayOnTheEdgesOfRaisedAndClosedLids) {
   const TriMesh& mesh = patient_.scene.patient.parts[eyes_part()].mesh;
   const auto at_rest = floats(mesh);
   const auto radii = lash_radii(mesh);
-  /// Largest distance of a lash's root from the skin.
-  const auto farthest = [&](const std::vector<Vector3f>& places, const std::vector<LidPose>& lids,
-                            const LifeSigns& signs) {
+  struct Off {
+    double most, mean;
+  };
+  /// Distances of the roots of the lashes from the skin.
+  const auto roots_off = [&](const std::vector<Vector3f>& places,
+                             const std::vector<Vector3f>& shifts, const LifeSigns& signs) {
     auto eyes = at_rest;
     std::vector<Vector3f> normals(eyes.size(), Vector3f::UnitZ());
-    living_.move_eyes(eyes_part(), signs, lids, eyes, normals);
+    living_.move_eyes(eyes_part(), signs, shifts, eyes, normals);
     TriMesh skin = patient_.face->mesh;
     for (std::size_t v = 0; v < places.size(); ++v) skin.vertices[v] = places[v].cast<double>();
     const TriangleTree skin_tree(skin), at_rest_tree(patient_.face->mesh);
-    double most = 0;
-    for (std::size_t v = 0; v < eyes.size(); ++v)
-      if (radii[v] > 0 && at_rest_tree.nearest(at_rest[v].cast<double>()).distance < 0.3)
-        most = std::max(most, skin_tree.nearest(eyes[v].cast<double>()).distance);
-    return most;
+    double most = 0, sum = 0;
+    int count = 0;
+    for (std::size_t v = 0; v < eyes.size(); ++v) {
+      if (radii[v] == 0 || at_rest_tree.nearest(at_rest[v].cast<double>()).distance >= 0.3)
+        continue;
+      const double off = skin_tree.nearest(eyes[v].cast<double>()).distance;
+      most = std::max(most, off);
+      sum += off;
+      ++count;
+    }
+    return Off{most, sum / count};
   };
-  for (const LifeSigns& signs : {still_, LifeSigns{.lids = {1, 1}, .alive = false}}) {
-    auto places = drawn("smile 1");
-    const auto lids = living_.move_lids(signs, true, places);
-    const double off = farthest(places, lids, signs);
-    RecordProperty(signs.lids.any() ? "closed" : "open", std::to_string(off));
-    EXPECT_LT(off, 0.8);
-    // Lashes that do not go with the lids are off them.
-    EXPECT_GT(farthest(places, std::vector<LidPose>(2), signs), off);
-  }
+  EXPECT_TRUE(living_.lash_shifts(patient_.rest)[eyes_part()].empty());
+  const auto smile = drawn("smile 1");
+  auto raised_brows = patient_.rest;
+  for (auto& p : raised_brows)
+    if (p.z() > 16) p.z() += 1;
+  for (const auto& face : {smile, raised_brows})
+    for (const LidClosure& closure : {LidClosure{}, LidClosure{1, 1}, LidClosure{-1, -1}}) {
+      const LifeSigns signs{.lids = closure, .alive = false};
+      auto places = face;
+      living_.move_lids(signs, true, places);
+      const Off now = roots_off(places, living_.lash_shifts(places)[eyes_part()], signs),
+                stays = roots_off(places, {}, signs);
+      RecordProperty((face == smile ? "smile " : "brows ") + std::to_string(closure.left),
+                     std::to_string(now.most) + ", " + std::to_string(now.mean));
+      EXPECT_LT(now.most, 0.5) << closure.left;
+      EXPECT_LT(now.mean, 0.17) << closure.left;
+      EXPECT_GT(stays.mean, now.mean + 0.02) << "lashes that stay are off the lids";
+    }
 }
 
 }  // namespace

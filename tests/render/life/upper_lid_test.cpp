@@ -134,6 +134,16 @@ TEST(UpperLidTest, FollowsTheGazeDownAndUp) {
     EXPECT_EQ(eye.lid->lowered({.lids = {1, 1}, .gaze_up = up}), 1);
 }
 
+TEST(UpperLidTest, ARaisedLidShowsMoreOfTheEyeballThanAtRest) {
+  const Eye eye;
+  ASSERT_TRUE(eye.lid);
+  const double raised = eye.lid->lowered({.lids = {-1, 0}, .alive = false});
+  EXPECT_LT(raised, -0.1);
+  EXPECT_NEAR(eye.lid->lowered({.lids = {-0.5, 0}, .alive = false}), raised / 2, 1e-12);
+  EXPECT_LT(eye.lid->lowered({.lids = {-1, 0}}), eye.lid->lowered({})) << "with life";
+  EXPECT_GT(showing(eye, eye.moved(raised)), showing(eye, eye.rest) + 0.01);
+}
+
 TEST(UpperLidTest, ClosesByTheClosureOfItsSideWhereverItLies) {
   const Eye eye;
   ASSERT_TRUE(eye.lid);

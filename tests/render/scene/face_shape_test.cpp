@@ -197,14 +197,13 @@ TEST(LidsNote, SaysWhyTheLidsOfAPatientDoNotClose) {
   EXPECT_NE(lids_note({parts.data(), 1}).find("no eyeballs were found"), std::string::npos);
   const TriMesh closed = ball(eye_centre, 12.2, 60);
   parts[0].mesh = about_both_eyes(closed, closed);
-  EXPECT_EQ(lids_note(parts), "expressions do not close the lids: no open lids were found");
+  EXPECT_EQ(lids_note(parts), "expressions do not move the lids: no open lids were found");
   parts[0].mesh = about_both_eyes(closed, open_lids());
   EXPECT_EQ(lids_note(parts),
-            "expressions do not close the left lids: no open lids were found on the left");
+            "expressions do not move the left lids: no open lids were found on the left");
   parts[0].mesh = about_both_eyes(open_lids(), open_lids());
   parts[1].mesh = eyeball();
-  EXPECT_EQ(lids_note(parts),
-            "expressions do not close the right lids: no right eyeball was found");
+  EXPECT_EQ(lids_note(parts), "expressions do not move the right lids: no right eyeball was found");
 }
 
 TEST_F(LifePictures, TheReliefOfAClosedLidsSkinIsNotDrawnOutToStreaks) {

@@ -51,7 +51,7 @@ FrameState full_frame() {
   FrameState frame;
   visit_frame(frame, Scrambler());
   frame.times[Stage::contact] = 1.5;
-  frame.lids = {0.25, 0.75};
+  frame.lids = {-0.25, 0.75};
   frame.state_hash = state_hash(frame);
   return frame;
 }

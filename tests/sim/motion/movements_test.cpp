@@ -162,9 +162,9 @@ TEST(Movements, ABlinkDoesNotOpenLidsThatAreHeldFurtherClosed) {
 
 TEST(Movements, LidsCloseByTheirActionUnitsAndBlinksAlone) {
   for (const char* closing : {"open 10; blink left", "inverse:AU43 0.5 over 1", "smile and AU45"})
-    EXPECT_TRUE(motion_closes_lids(closing)) << closing;
+    EXPECT_TRUE(motion_moves_lids(closing)) << closing;
   for (const char* others : {"smile; rest", "AU43 0; hold 1", "opening", "nowhere.csv"})
-    EXPECT_FALSE(motion_closes_lids(others)) << others;
+    EXPECT_FALSE(motion_moves_lids(others)) << others;
 }
 
 TEST(Movements, ALongerMotionHasASlowerExpression) {

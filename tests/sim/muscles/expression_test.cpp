@@ -54,6 +54,24 @@ TEST(Expression, NotesKindsThatThePatientLacks) {
   EXPECT_NE(lacking.notes[0].find("mentalis"), std::string::npos) << lacking.notes[0];
 }
 
+TEST(Expression, ActionUnit5RaisesTheLidsThatOthersLeaveOpen) {
+  const auto closure = [](const std::string& levels) {
+    return make_expression(levels, pair_of_muscles()).at(1).closure();
+  };
+  EXPECT_EQ(closure("AU5:0.5:left"), (LidClosure{-0.5, 0}));
+  EXPECT_EQ(closure("AU5+AU45"), (LidClosure{1, 1})) << "a blink closes raised lids";
+  EXPECT_EQ(closure("AU45:0.5+AU5"), (LidClosure{0, 0}));
+  EXPECT_LT(closure("surprise").left, -0.5);
+  EXPECT_EQ(make_expression("AU5", pair_of_muscles()).notes.size(), 1u) << "drawn only";
+  const std::string kind(lid_raiser);
+  const auto file = std::filesystem::temp_directory_path() / "condyle-test-raised-lids.csv";
+  write_file(file, "time_s,left_" + kind + ",AU45\n0,0,0\n1,1,0\n2,1,1\n");
+  const Expression lids = make_expression(file.string(), pair_of_muscles());
+  EXPECT_EQ(lids.at(1).closure(), (LidClosure{-1, 0}));
+  EXPECT_EQ(lids.at(2).closure(), (LidClosure{1, 1}));
+  std::filesystem::remove(file);
+}
+
 TEST(Expression, ActionUnits43And45CloseTheLidsOfTheirSides) {
   for (const char* unit : {"AU43", "au45"}) {
     const Expression wink = make_expression(std::string(unit) + ":0.8:left", pair_of_muscles());
@@ -63,7 +81,8 @@ TEST(Expression, ActionUnits43And45CloseTheLidsOfTheirSides) {
     EXPECT_EQ(wink.at(3).lids.right, 0);
     EXPECT_EQ(wink.at(3).muscles, (std::vector<double>{0, 0}));
     ASSERT_EQ(wink.notes.size(), 1u) << "no muscle is missing";
-    EXPECT_EQ(wink.notes[0], "lid closure is drawn only; no measurement depends on it");
+    EXPECT_EQ(wink.notes[0],
+              "the motion of the upper lids is drawn only; no measurement depends on it");
     EXPECT_FALSE(expression_moves_upper_face(unit));
   }
   const Expression both = make_expression("AU43:0.7+AU45:0.7:right+smile", pair_of_muscles());
@@ -134,6 +153,10 @@ TEST(FaceWeakness, LeavesTheLidsOfItsSideOpen) {
   EXPECT_EQ(closed({"left_orbicularis_oculi_palpebral:0"}).lids, (LidClosure{0, 0.5}));
   EXPECT_EQ(closed({"orbicularis_oculi_palpebral:0.5", "left:0.5"}).lids, (LidClosure{0.25, 0.25}));
   EXPECT_EQ(closed({"zygomaticus_major:0"}).lids, (LidClosure{1, 0.5}));
+  const auto raised =
+      weakened({.muscles = {1, 1}, .raise = {1, 1}},
+               muscle_strengths(std::vector<std::string>{"left:0"}, pair_of_muscles()));
+  EXPECT_EQ(raised.raise, (LidClosure{1, 1})) << "by another nerve";
 }
 
 TEST(Expression, RisesAndFallsBetweenItsTimesWithoutOvershoot) {
