@@ -22,7 +22,7 @@ constexpr float iris_mm = 5.5f;                    // radius
 constexpr float dark = 0.12f;                      // of a pupil, largest of the channels
 constexpr double seen_mm = 700;                    // distance of the point that is looked at
 // Roots of lashes: within this many radii of an eyeball's centre, and this near to the skin.
-constexpr float beside_eye = 1.5f, off_skin_mm = 1;
+constexpr float beside_eye = 1.5f, off_skin_mm = 3;
 constexpr float visible_mm = 0.02f;
 const Vector3f ahead(0, -1, 0);
 

@@ -39,7 +39,8 @@ class LivingFace {
   /// By how much the present face has moved the roots of the lashes of each part.
   std::vector<std::vector<Eigen::Vector3f>> lash_shifts(
       std::span<const Eigen::Vector3f> places) const;
-  /// Moves vertices and normals of a part, given at rest. lashes: shifts of its own.
+  /// Moves vertices and normals of a part, given at rest. lashes: the element of
+  /// lash_shifts for this part.
   void move_eyes(std::size_t part, const LifeSigns& signs, std::span<const Eigen::Vector3f> lashes,
                  std::span<Eigen::Vector3f> places, std::span<Eigen::Vector3f> normals) const;
 

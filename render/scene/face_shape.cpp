@@ -89,7 +89,8 @@ void FaceShape::send(std::span<const Part> parts, std::span<Drawable> drawables,
     drawn.alive = [&](std::span<Eigen::Vector3f> places) {
       auto moved =
           own.move_face(look.life.value_or(Life{}), signs, look.folds && moved_face, places);
-      lashes = std::move(moved.lashes);
+      // Eyes before an operation are as they were, beside skin that lies where it did.
+      if (!settings.before_operation) lashes = std::move(moved.lashes);
       return std::move(moved.shades);
     };
   }

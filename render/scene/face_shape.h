@@ -37,7 +37,7 @@ struct FaceMoment {
 };
 
 /// Shape of the first face of a scene, and of the eyes, as a picture shows it: with folds, the lids
-/// that an expression closes, and life.
+/// that an expression moves, their lashes, and life.
 class FaceShape {
  public:
   /// Sets the vertices of the displayed face, without folds and life.

@@ -120,7 +120,7 @@ class ViewSession {
     std::weak_ptr<const SessionPatient> of;
     std::string text;
   };
-  LidsNote lids_note_;               // from the first slider or motion that closes lids on
+  LidsNote lids_note_;               // from the first slider or motion that moves lids on
   bool motion_lifts_brows_ = false;  // the present motion, see TissueSettings::upper_face
   bool motion_moves_lids_ = false;
   std::shared_ptr<const SessionPatient> face_asked_for_;  // when the upper face was added

@@ -14,7 +14,7 @@ namespace condyle {
 /// Kind of the muscle that closes the lids, which needs no line in a patient: see LidClosure. No
 /// expression excites a muscle of this kind.
 inline constexpr std::string_view lid_closer = "orbicularis_oculi_palpebral";
-/// The same of the muscle that raises the upper lids.
+/// Likewise the muscle that raises the upper lids.
 inline constexpr std::string_view lid_raiser = "levator_palpebrae_superioris";
 inline bool is_lid_muscle(std::string_view kind) {
   return kind == lid_closer || kind == lid_raiser;

@@ -46,7 +46,7 @@ Eigen::Vector3f skin_color(const Vector3d& at) {
   mix({.83, .49, .43}, .34 * blood * spot({0, -116, -16}, {13, 10, 10}));  // nose
   mix({.82, .47, .42}, .25 * blood * spot({0, -97, -82}, {12, 9, 8}));     // chin
   if (x > 68)
-    mix({.83, .52, .45}, .5 * smooth_step((x - 68) / 8) * spot({84, 14, 0}, {14, 25, 38}));
+    mix({.82, .45, .38}, .75 * smooth_step((x - 68) / 8) * spot({84, 14, 0}, {14, 25, 38}));
   mix({.70, .50, .44}, .35 * spot({31, -84, 16}, {17, 14, 9}));  // around the eye
   mix({.64, .50, .50}, .34 * spot({27, -88, 3}, {13, 9, 5}));    // veins below it
   // Shaven beard: denser on chin and upper lip, thinning toward cheek and throat.

@@ -127,12 +127,16 @@ TEST_F(LowerLidTest, LashesStayOnTheEdgesOfRaisedAndClosedLids) {
   struct Off {
     double most, mean;
   };
+  float turned = 1;  // least cosine between a lash's direction and that at rest
   /// Distances of the roots of the lashes from the skin.
   const auto roots_off = [&](const std::vector<Vector3f>& places,
                              const std::vector<Vector3f>& shifts, const LifeSigns& signs) {
     auto eyes = at_rest;
     std::vector<Vector3f> normals(eyes.size(), Vector3f::UnitZ());
     living_.move_eyes(eyes_part(), signs, shifts, eyes, normals);
+    turned = 1;
+    for (std::size_t v = 0; v < eyes.size(); ++v)
+      if (radii[v] > 0) turned = std::min(turned, normals[v].z());
     TriMesh skin = patient_.face->mesh;
     for (std::size_t v = 0; v < places.size(); ++v) skin.vertices[v] = places[v].cast<double>();
     const TriangleTree skin_tree(skin), at_rest_tree(patient_.face->mesh);
@@ -158,8 +162,10 @@ TEST_F(LowerLidTest, LashesStayOnTheEdgesOfRaisedAndClosedLids) {
       const LifeSigns signs{.lids = closure, .alive = false};
       auto places = face;
       living_.move_lids(signs, true, places);
-      const Off now = roots_off(places, living_.lash_shifts(places)[eyes_part()], signs),
-                stays = roots_off(places, {}, signs);
+      const Off now = roots_off(places, living_.lash_shifts(places)[eyes_part()], signs);
+      EXPECT_LT(turned, closure.left > 0 ? 0.9 : 1.0) << "with the lid";
+      const Off stays = roots_off(places, {}, signs);
+      EXPECT_EQ(turned, 1);
       RecordProperty((face == smile ? "smile " : "brows ") + std::to_string(closure.left),
                      std::to_string(now.most) + ", " + std::to_string(now.mean));
       EXPECT_LT(now.most, 0.5) << closure.left;

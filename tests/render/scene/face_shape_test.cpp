@@ -191,7 +191,7 @@ TEST_F(LifePictures, ACheekThatRisesRaisesTheLowerLidWhereFoldsAreDrawn) {
   EXPECT_EQ(blue(rest, true), open) << "back at rest";
 }
 
-TEST(LidsNote, SaysWhyTheLidsOfAPatientDoNotClose) {
+TEST(LidsNote, SaysWhyTheLidsOfAPatientDoNotMove) {
   std::vector<Part> parts = eye_and_lids();
   EXPECT_EQ(lids_note(parts), "");
   EXPECT_NE(lids_note({parts.data(), 1}).find("no eyeballs were found"), std::string::npos);

@@ -121,9 +121,10 @@ TEST(FrameFile, DamagedFilesAreRefusedWithTheirName) {
   std::string lids = bytes;
   lids[lids_begin + 7] ^= 0x40;  // a huge number
   EXPECT_NE(refusal(lids).find("closure of lids"), std::string::npos) << refusal(lids);
-  const double nan = std::nan("");
-  std::memcpy(&lids[lids_begin], &nan, sizeof nan);
-  EXPECT_NE(refusal(lids).find("closure of lids"), std::string::npos) << refusal(lids);
+  for (const double closure : {std::nan(""), -1.25, 1.25}) {
+    std::memcpy(&lids[lids_begin], &closure, sizeof closure);
+    EXPECT_NE(refusal(lids).find("closure of lids"), std::string::npos) << refusal(lids);
+  }
   for (std::size_t at = state_begins; at + 16 < bytes.size(); at += 7) {
     std::string flipped = bytes;
     flipped[at] = static_cast<char>(flipped[at] ^ 0x10);

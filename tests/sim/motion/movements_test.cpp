@@ -160,10 +160,12 @@ TEST(Movements, ABlinkDoesNotOpenLidsThatAreHeldFurtherClosed) {
   EXPECT_NEAR(lids(0.82).right, 0, 1e-9);
 }
 
-TEST(Movements, LidsCloseByTheirActionUnitsAndBlinksAlone) {
-  for (const char* closing : {"open 10; blink left", "inverse:AU43 0.5 over 1", "smile and AU45"})
-    EXPECT_TRUE(motion_moves_lids(closing)) << closing;
-  for (const char* others : {"smile; rest", "AU43 0; hold 1", "opening", "nowhere.csv"})
+TEST(Movements, LidsMoveByTheirActionUnitsBlinksAndSurpriseAlone) {
+  for (const char* moving : {"open 10; blink left", "inverse:AU43 0.5 over 1", "smile and AU45",
+                             "AU5 0.5", "surprise; rest"})
+    EXPECT_TRUE(motion_moves_lids(moving)) << moving;
+  for (const char* others :
+       {"smile; rest", "AU43 0; hold 1", "AU5 0; hold 1", "opening", "nowhere.csv"})
     EXPECT_FALSE(motion_moves_lids(others)) << others;
 }
 

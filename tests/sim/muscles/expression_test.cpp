@@ -62,6 +62,8 @@ TEST(Expression, ActionUnit5RaisesTheLidsThatOthersLeaveOpen) {
   EXPECT_EQ(closure("AU5+AU45"), (LidClosure{1, 1})) << "a blink closes raised lids";
   EXPECT_EQ(closure("AU45:0.5+AU5"), (LidClosure{0, 0}));
   EXPECT_LT(closure("surprise").left, -0.5);
+  EXPECT_EQ(with_blink({-1, -0.5}, {0.5, 1}), (LidClosure{0, 1})) << "and so do those of life";
+  EXPECT_EQ(with_blink({-1, 0.6}, {0, 0.3}), (LidClosure{-1, 0.6}));
   EXPECT_EQ(make_expression("AU5", pair_of_muscles()).notes.size(), 1u) << "drawn only";
   const std::string kind(lid_raiser);
   const auto file = std::filesystem::temp_directory_path() / "condyle-test-raised-lids.csv";
@@ -122,7 +124,7 @@ TEST(Expression, AFileNotesKindsThatThePatientLacks) {
 TEST(Expression, TellsWhetherItMovesTheUpperFace) {
   for (const char* spec : {"surprise", "AU1:0.2:right", "smile+AU4:0.5", "sad", "disgust"})
     EXPECT_TRUE(expression_moves_upper_face(spec)) << spec;
-  for (const char* spec : {"smile", "kiss", "AU4:0", "AU12+AU9:0.5"})
+  for (const char* spec : {"smile", "kiss", "AU4:0", "AU5", "AU12+AU9:0.5"})
     EXPECT_FALSE(expression_moves_upper_face(spec)) << spec;
 }
 
