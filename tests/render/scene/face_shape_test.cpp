@@ -1,6 +1,8 @@
 // Life of a drawn face: its pictures depend on the frame alone, and without life nothing changes.
 #include "render/scene/face_shape.h"
 
+#include <optional>
+
 #include "tests/render/life/eye_parts.h"
 #include "tests/render/scene_fixture.h"
 
@@ -189,6 +191,55 @@ TEST_F(LifePictures, ACheekThatRisesRaisesTheLowerLidWhereFoldsAreDrawn) {
   EXPECT_EQ(blue(risen, false), open);
   EXPECT_LT(blue(risen, true), 0.93 * open) << "folds switched on again";
   EXPECT_EQ(blue(rest, true), open) << "back at rest";
+}
+
+/// Mean height of what is green, rows from the top; nothing without any.
+std::optional<double> green_row(const Image& image) {
+  double sum = 0;
+  int count = 0;
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x)
+      if (const Pixel p = pixel(image, x, y); p.a > 128 && p.g > p.r + 20 && p.g > p.b + 20) {
+        sum += y;
+        ++count;
+      }
+  return count > 0 ? std::optional(sum / count) : std::nullopt;
+}
+
+TEST_F(LifePictures, LashesGoWithTheSkinTheyGrowFromAndBackToRest) {
+  std::vector<Part> parts = eye_and_lids();
+  TriMesh lash = ball({0, 0, 0}, 1, 16);
+  const Eigen::Vector3d along(0, -std::cos(0.42), std::sin(0.42));
+  for (auto& p : lash.vertices)
+    p = eye_centre + (15.4 + 3 * p.y()) * along +
+        0.2 * (p.x() * Eigen::Vector3d::UnitX() + p.z() * along.cross(Eigen::Vector3d::UnitX()));
+  TriMesh& eyes = parts[1].mesh;
+  const int first = static_cast<int>(eyes.vertices.size());
+  eyes.vertices.insert(eyes.vertices.end(), lash.vertices.begin(), lash.vertices.end());
+  for (const auto& t : lash.triangles) eyes.triangles.emplace_back(t.array() + first);
+  eyes.colors.resize(eyes.vertices.size(), {0, 0.8f, 0});
+  SceneRenderer renderer(parts);
+  FrameState rest = frame_at(0);
+  rest.face = float_positions(parts[0].mesh);
+  FrameState raised = rest;
+  for (auto& p : raised.face)
+    if (p.z() > eye_centre.z() + 2) p.z() += 1.5f;
+  for (const bool folds : {true, false}) {
+    auto settings = alive();
+    settings.life.reset();
+    settings.folds = folds;
+    const auto picture = [&](const FrameState& frame) {
+      renderer.update(frame);
+      return renderer.picture(eye_camera(), settings);
+    };
+    const Image still = picture(rest), up = picture(raised), down = picture(frame_closing({1, 1}));
+    const auto row = green_row(still), row_up = green_row(up), row_down = green_row(down);
+    ASSERT_TRUE(row && row_up && row_down);
+    EXPECT_LT(*row_up, *row - 2);
+    EXPECT_GT(*row_down, *row + 2);
+    picture(raised);
+    EXPECT_EQ(picture(rest).rgba, still.rgba);
+  }
 }
 
 TEST(LidsNote, SaysWhyTheLidsOfAPatientDoNotMove) {
