@@ -1,6 +1,7 @@
 #include "sim/muscles/expression_names.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <set>
 #include <utility>
@@ -11,13 +12,16 @@
 namespace condyle {
 namespace {
 
+/// The excitations of the muscles of the lids.
+template <class Excitation>
+auto lid_muscles(Excitation& of) {
+  return std::array{&of.lids.left, &of.lids.right, &of.raise.left, &of.raise.right};
+}
+
 FaceExcitation limited(FaceExcitation excitation) {
   const auto limit = [](double& value) { value = std::clamp(value, 0.0, 1.0); };
   std::ranges::for_each(excitation.muscles, limit);
-  for (LidClosure* of : {&excitation.lids, &excitation.raise}) {
-    limit(of->left);
-    limit(of->right);
-  }
+  for (double* of : lid_muscles(excitation)) limit(*of);
   return excitation;
 }
 
@@ -176,10 +180,9 @@ std::string missing_kinds(std::span<const ExpressionLevel> levels,
 FaceExcitation added_excitations(FaceExcitation a, const FaceExcitation& b) {
   a.muscles.resize(std::max(a.muscles.size(), b.muscles.size()));
   for (std::size_t m = 0; m < b.muscles.size(); ++m) a.muscles[m] += b.muscles[m];
-  for (LidClosure FaceExcitation::*of : {&FaceExcitation::lids, &FaceExcitation::raise}) {
-    (a.*of).left += (b.*of).left;
-    (a.*of).right += (b.*of).right;
-  }
+  const auto own = lid_muscles(a);
+  const auto others = lid_muscles(b);
+  for (std::size_t i = 0; i < own.size(); ++i) *own[i] += *others[i];
   return limited(std::move(a));
 }
 
@@ -187,10 +190,9 @@ FaceExcitation between(FaceExcitation a, const FaceExcitation& b, double fractio
   assert(a.muscles.size() == b.muscles.size());
   const auto move = [&](double& from, double to) { from += fraction * (to - from); };
   for (std::size_t m = 0; m < a.muscles.size(); ++m) move(a.muscles[m], b.muscles[m]);
-  for (LidClosure FaceExcitation::*of : {&FaceExcitation::lids, &FaceExcitation::raise}) {
-    move((a.*of).left, (b.*of).left);
-    move((a.*of).right, (b.*of).right);
-  }
+  const auto own = lid_muscles(a);
+  const auto others = lid_muscles(b);
+  for (std::size_t i = 0; i < own.size(); ++i) move(*own[i], *others[i]);
   return a;
 }
 
