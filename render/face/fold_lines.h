@@ -22,6 +22,7 @@ struct FoldLine {
   float limit_mm = 2;   // largest depth
   float groove_mm = 2;  // half width of the groove
   float bulge = 0.6f;   // height of the skin beside the groove over the depth
+  float shared = 0;     // fraction of the line's largest surplus that all its samples have at least
 };
 
 /// Nasolabial folds, creases beside the corners of the mouth, lines around the lips and across the

@@ -103,6 +103,29 @@ TEST(SkinFoldsTest, NasolabialFoldsBeginAtTheAlaAndEndInEvenSkin) {
   EXPECT_GT(top, 20);  // beside the nose
 }
 
+TEST(SkinFoldsTest, TheNasolabialFoldOfASmileReachesTheAla) {
+  const FoldedHead head;
+  const auto lining = line_mouth(head.parts);
+  ASSERT_TRUE(lining);
+  ASSERT_TRUE(head.folds);
+  const std::vector<Vector3f> smooth = head.smiling(10);
+  std::vector<Vector3f> places = smooth;
+  head.folds->apply(places);
+  const auto deepest_at = [&](const Vector3f& at) {
+    float deepest = 0;
+    for (std::size_t v = 0; v < places.size(); ++v)
+      if ((head.rest[v] - at).norm() < 4)
+        deepest = std::max(deepest, (places[v] - smooth[v]).norm());
+    return deepest;
+  };
+  for (const FoldLine& line : find_fold_lines(head.rest, head.normals, lining->rim)) {
+    if (line.far_mm == 0 || line.samples.front().point.x() < 0) continue;  // the left fold alone
+    float deepest = 0;
+    for (const auto& sample : line.samples) deepest = std::max(deepest, deepest_at(sample.point));
+    EXPECT_GT(deepest_at(line.samples.front().point), 0.25f * deepest);
+  }
+}
+
 TEST(SkinFoldsTest, PursedLipsHaveLinesAroundThem) {
   const FoldedHead head;
   ASSERT_TRUE(head.folds);
