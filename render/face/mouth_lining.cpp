@@ -238,10 +238,12 @@ struct Rise {
   double rises_mm, leaves_mm;
 };
 
-Rise rise_from(const Vector3d& start, bool upper, double fornix, const MouthSpace& space) {
+Rise rise_from(const Vector3d& start, const RimPoint& place, double fornix,
+               const MouthSpace& space) {
   const double to_throat = space.throat_y - start.y();
-  Rise rise = {0.1 * to_throat, 0.35 * to_throat};
-  for (double up = 0; upper && up < rise.rises_mm; up += 0.5)
+  const double corner = smooth_step((std::abs(place.across) - 0.5) / 0.4);
+  Rise rise = {(place.upper ? 0.1 : 0.1 + 0.1 * corner) * to_throat, 0.35 * to_throat};
+  for (double up = 0; place.upper && up < rise.rises_mm; up += 0.5)
     if (space.bone.at(start.x(), start.y() + up) < fornix) {
       rise.rises_mm = std::max(1.0, up - MouthSpace::within_mm);
       rise.leaves_mm = 2 * rise.rises_mm;
@@ -297,7 +299,7 @@ void lay_column(MouthLining& lining, std::size_t i, const Vector3d& start, const
   const double turn = std::sqrt(std::max(0.0, 1 - std::pow(across, 20)));
   const double fornix =
       space.mid_z + (is_upper ? MouthSpace::fornix_up_mm : -MouthSpace::fornix_down_mm);
-  const auto [rises_mm, leaves_mm] = rise_from(start, is_upper, fornix, space);
+  const auto [rises_mm, leaves_mm] = rise_from(start, place, fornix, space);
   Roof roof(space, across);
   for (int ring = 0; ring <= rings; ++ring) {
     const std::size_t v = static_cast<std::size_t>(ring) * lining.rim.size() + i;

@@ -3,13 +3,19 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <filesystem>
 #include <map>
 #include <numbers>
 #include <utility>
 
+#include "render/face/cheek_thickness.h"
+#include "render/face/skin_folds.h"
 #include "render/mesh/vertex_normals.h"
 #include "render/scene/mouth_cavity.h"
+#include "sim/case/case_io.h"
+#include "tests/render/face/opened_patient.h"
 #include "tests/render/scene_fixture.h"
+#include "tests/support/real_cases.h"
 
 namespace condyle {
 namespace {
@@ -69,6 +75,46 @@ TEST(MouthLining, StaysBehindLipsThatComeForwardAndYieldsToThoseThatGoBack) {
     } else {
       EXPECT_GT(most, 0.5f);
     }
+  }
+}
+
+TEST(MouthLining, StaysBehindTheSkinOfARealSmile) {
+  if (!std::filesystem::exists(test::real_data() / "case-badin"))
+    GTEST_SKIP() << "real anatomy absent";
+  const auto folder = test::real_data() / "case-badin";
+  OpenedPatient real(import_meshes({.files = {{Role::maxilla, folder / "maxilla_capped.ply"},
+                                              {Role::mandible, folder / "mandible.ply"},
+                                              {Role::face, folder / "face_skin.ply"}},
+                                    .landmarks = folder / "markers.csv",
+                                    .name = "badin",
+                                    .face_muscles = folder / "face_muscles.csv"}));
+  const MouthLining& lining = *real.prepared.lining();
+  const SkinFolds folds(real.rest, real.normals, real.face->mesh.triangles, lining.rim);
+  const CheekThickness cheeks(real.rest, real.normals, lining.rim, real.parts);
+  for (const char* words : {"smile 0.5", "smile 1"}) {
+    const FrameState frame = real.frame(words);
+    auto places = real.drawn(frame);
+    folds.apply(places);
+    cheeks.apply(places);
+    std::vector<Eigen::Vector3f> rim;
+    for (const int v : lining.rim) rim.push_back(places[static_cast<std::size_t>(v)]);
+    const auto now = places_now(lining, rim, frame.poses[real.scene.patient.jaw.lower_arch]);
+    std::vector<Eigen::Vector3f> inner;  // of the lining's triangles
+    for (const auto& t : lining.triangles)
+      for (const auto& [a, b] : {std::pair{0.5f, 0.5f}, {0.5f, 0.f}, {0.f, 0.5f}, {0.33f, 0.33f}})
+        if (t.minCoeff() >= std::ssize(rim))
+          inner.push_back(a * now[static_cast<std::size_t>(t[0])] +
+                          b * now[static_cast<std::size_t>(t[1])] +
+                          (1 - a - b) * now[static_cast<std::size_t>(t[2])]);
+    TriMesh shown{{}, lining.face, {}};
+    for (const auto& p : places) shown.vertices.push_back(p.cast<double>());
+    const TriangleTree skin(shown);
+    double nearest = 100;  // mm behind the skin, at the sides of the mouth
+    for (const auto& p : inner) {
+      const auto skin_before = skin.ray_cast(p.cast<double>(), -Eigen::Vector3d::UnitY(), nearest);
+      if (std::abs(p.x()) > 20 && skin_before) nearest = skin_before->distance;
+    }
+    EXPECT_GT(nearest, 0.4) << words;
   }
 }
 

@@ -20,7 +20,7 @@ inline std::vector<Eigen::Vector3f> floats(const TriMesh& mesh) {
   return places;
 }
 
-/// The built-in patient, with its drawn face, at rest and in motion.
+/// A patient, with its drawn face, at rest and in motion.
 struct OpenedPatient {
   SimulatorSettings settings = [] {
     SimulatorSettings made;
@@ -28,13 +28,14 @@ struct OpenedPatient {
     made.step_s = 1.0 / 60;
     return made;
   }();
-  Scene scene = make_scene(builtin_patient({}, {}), settings);
+  Scene scene;
   PreparedParts prepared{scene.patient.parts};
   const Part* face = nullptr;
   std::vector<const Part*> parts = {};
   std::vector<Eigen::Vector3f> rest = {}, normals = {};
 
-  OpenedPatient() {
+  explicit OpenedPatient(Case patient = builtin_patient({}, {}))
+      : scene(make_scene(std::move(patient), settings)) {
     for (const Part& part : scene.patient.parts) {
       parts.push_back(&prepared.drawn(part));
       if (part.role == Role::face) face = parts.back();
