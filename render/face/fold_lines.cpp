@@ -263,14 +263,23 @@ std::vector<FoldLine> find_fold_lines(std::span<const Vector3f> rest,
             {.gauge_mm = 2.5f, .gain = 0.9f, .limit_mm = 0.45f, .groove_mm = 1.2f, .bulge = 0.5f},
             0.7f);
       }
-  if (const auto brows = tip ? face.glabella(*tip) : std::nullopt)
-    for (const float up : {9.f, 17.f, 25.f}) {
-      const auto at = [&](float beside, float higher) {
-        return Vector2f(brows->x() + unit * beside, brows->z() + unit * (up + higher));
-      };
-      add(std::array{at(-36, -4), at(-18, 1), at(0, -1), at(18, 1), at(36, -4)}, 1,
-          {.gauge_mm = 4, .gain = 0.8f, .limit_mm = 0.8f, .groove_mm = 1.7f, .bulge = 0.7f});
-    }
+  if (const auto brows = tip ? face.glabella(*tip) : std::nullopt) {
+    const auto at = [&](float beside, float higher) {
+      return Vector2f(brows->x() + unit * beside, brows->z() + unit * higher);
+    };
+    for (const float up : {9.f, 17.f, 25.f})
+      add(std::array{at(-36, up - 4), at(-18, up + 1), at(0, up - 1), at(18, up + 1),
+                     at(36, up - 4)},
+          1, {.gauge_mm = 4, .gain = 0.8f, .limit_mm = 0.8f, .groove_mm = 1.7f, .bulge = 0.7f});
+    for (const float side : {1.f, -1.f})
+      add(std::array{at(5 * side, -8), at(6.5f * side, 1), at(8.5f * side, 12)}, side,
+          {.gauge_mm = 4,
+           .onset = 0.01f,
+           .gain = 1.5f,
+           .limit_mm = 0.9f,
+           .groove_mm = 1.4f,
+           .bulge = 0.6f});
+  }
   if (const auto sulcus = face.mentolabial_point()) {
     const Vector2f at(sulcus->x(), sulcus->z());
     add(std::array{Vector2f(at - unit * Vector2f(15, 4)), at,

@@ -25,8 +25,8 @@ struct FoldLine {
   float shared = 0;     // fraction of the line's largest surplus that all its samples have at least
 };
 
-/// Nasolabial folds, creases beside the corners of the mouth, lines around the lips and across the
-/// forehead, and the mentolabial sulcus of a face at rest, mm, LPS. normals: unit, one per vertex.
+/// Nasolabial folds, creases beside the corners of the mouth, lines around the lips, across the
+/// forehead and between the brows, and the mentolabial sulcus of a face at rest, mm, LPS. normals: unit, one per vertex.
 /// rim: vertices around the mouth. Lines that the surface does not show are omitted. Their course,
 /// from the ala round the corner of the mouth, and their depths were chosen by eye.
 std::vector<FoldLine> find_fold_lines(std::span<const Eigen::Vector3f> rest,

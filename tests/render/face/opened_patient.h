@@ -22,26 +22,29 @@ inline std::vector<Eigen::Vector3f> floats(const TriMesh& mesh) {
 
 /// A patient, with its drawn face, at rest and in motion.
 struct OpenedPatient {
-  SimulatorSettings settings = [] {
-    SimulatorSettings made;
-    made.face = true;
-    made.step_s = 1.0 / 60;
-    return made;
-  }();
+  SimulatorSettings settings;
   Scene scene;
   PreparedParts prepared{scene.patient.parts};
   const Part* face = nullptr;
   std::vector<const Part*> parts = {};
   std::vector<Eigen::Vector3f> rest = {}, normals = {};
 
-  explicit OpenedPatient(Case patient = builtin_patient({}, {}))
-      : scene(make_scene(std::move(patient), settings)) {
+  /// upper_face: the tissue includes the brows.
+  explicit OpenedPatient(Case patient = builtin_patient({}, {}), bool upper_face = false)
+      : settings(settings_with(upper_face)), scene(make_scene(std::move(patient), settings)) {
     for (const Part& part : scene.patient.parts) {
       parts.push_back(&prepared.drawn(part));
       if (part.role == Role::face) face = parts.back();
     }
     rest = floats(face->mesh);
     vertex_normals(rest, face->mesh.triangles, normals);
+  }
+  static SimulatorSettings settings_with(bool upper_face) {
+    SimulatorSettings made;
+    made.face = true;
+    made.step_s = 1.0 / 60;
+    made.tissue_model.upper_face = upper_face;
+    return made;
   }
   FrameState frame(const std::string& words) {
     const Motion motion = make_motion(words + " over 1", scene.patient, scene.contacts);

@@ -3,6 +3,7 @@
 #include "render/face/skin_folds.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "render/face/mouth_lining.h"
@@ -167,6 +168,31 @@ TEST(SkinFoldsTest, TheForeheadHasThreeLinesAboveTheGlabellaWhereThereIsOne) {
       ++lines;
     }
     EXPECT_EQ(lines, whole ? 3 : 0);
+  }
+}
+
+TEST(SkinFoldsTest, BrowsDrawnTogetherFoldBetweenThem) {
+  OpenedPatient p(builtin_patient({}, {}), true);
+  const SkinFolds folds(p.rest, p.normals, p.face->mesh.triangles, p.prepared.lining()->rim);
+  const Vector3f glabella = p.scene.patient.landmarks.find("glabella").value().cast<float>();
+  const auto deepest = [&](const char* words) {  // at the left and at the right
+    const auto smooth = p.drawn(p.frame(words));
+    auto places = smooth;
+    folds.apply(places);
+    std::array<float, 2> most{};
+    for (std::size_t v = 0; v < places.size(); ++v) {
+      const Vector3f off = p.rest[v] - glabella;
+      if (std::abs(off.x()) < 2 || std::abs(off.x()) > 10 || off.z() < -8 || off.z() > 12) continue;
+      float& side = most[off.x() > 0 ? 0 : 1];
+      side = std::max(side, (places[v] - smooth[v]).norm());
+    }
+    return most;
+  };
+  const auto little = deepest("AU4 0.15"), full = deepest("AU4 1"), opened = deepest("open 10");
+  for (const std::size_t side : {0u, 1u}) {
+    EXPECT_GT(little[side], 0.05f);
+    EXPECT_GT(full[side], little[side] + 0.1f);
+    EXPECT_EQ(opened[side], 0);
   }
 }
 
