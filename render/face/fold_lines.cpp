@@ -244,7 +244,7 @@ std::vector<FoldLine> find_fold_lines(std::span<const Vector3f> rest,
            .limit_mm = 2.5f,
            .groove_mm = 2.2f,
            .bulge = 0.9f,
-           .shared = 0.6f},
+           .begun = 0.6f},
           0.55f);
     }
     add(std::array{beside(3.5f, 5), beside(4.5f, 0), beside(4, -6)}, s,
@@ -267,10 +267,12 @@ std::vector<FoldLine> find_fold_lines(std::span<const Vector3f> rest,
     const auto at = [&](float beside, float higher) {
       return Vector2f(brows->x() + unit * beside, brows->z() + unit * higher);
     };
+    // Across the forehead.
     for (const float up : {9.f, 17.f, 25.f})
       add(std::array{at(-36, up - 4), at(-18, up + 1), at(0, up - 1), at(18, up + 1),
                      at(36, up - 4)},
           1, {.gauge_mm = 4, .gain = 0.8f, .limit_mm = 0.8f, .groove_mm = 1.7f, .bulge = 0.7f});
+    // Frown lines, from the root of the nose upward. Corrugators shorten this skin little.
     for (const float side : {1.f, -1.f})
       add(std::array{at(5 * side, -8), at(6.5f * side, 1), at(8.5f * side, 12)}, side,
           {.gauge_mm = 4,

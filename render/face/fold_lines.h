@@ -22,13 +22,14 @@ struct FoldLine {
   float limit_mm = 2;   // largest depth
   float groove_mm = 2;  // half width of the groove
   float bulge = 0.6f;   // height of the skin beside the groove over the depth
-  float shared = 0;     // fraction of the line's largest surplus that all its samples have at least
+  float begun = 0;      // surplus at least, from the first sample to where it is largest, over that
 };
 
 /// Nasolabial folds, creases beside the corners of the mouth, lines around the lips, across the
-/// forehead and between the brows, and the mentolabial sulcus of a face at rest, mm, LPS. normals: unit, one per vertex.
-/// rim: vertices around the mouth. Lines that the surface does not show are omitted. Their course,
-/// from the ala round the corner of the mouth, and their depths were chosen by eye.
+/// forehead and between the brows, and the mentolabial sulcus of a face at rest, mm, LPS. normals:
+/// unit, one per vertex. rim: vertices around the mouth. Lines that the surface does not show are
+/// omitted. Their course, from the ala round the corner of the mouth, and their depths were chosen
+/// by eye.
 std::vector<FoldLine> find_fold_lines(std::span<const Eigen::Vector3f> rest,
                                       std::span<const Eigen::Vector3f> normals,
                                       std::span<const int> rim);

@@ -233,7 +233,8 @@ std::vector<Vector3f> starts_of(const TriMesh& face, const MouthLining& lining) 
 
 /// Distance from the rim over which the lining rises to where the cheek meets the jaw, mm, and over
 /// which it follows the lip: it rises in front of the first crown, however near, and leaves the lip
-/// there.
+/// there. Below the corners it descends over twice the distance: a smile thins the cheek there, and
+/// the lining would pierce it.
 struct Rise {
   double rises_mm, leaves_mm;
 };
@@ -241,8 +242,11 @@ struct Rise {
 Rise rise_from(const Vector3d& start, const RimPoint& place, double fornix,
                const MouthSpace& space) {
   const double to_throat = space.throat_y - start.y();
-  const double corner = smooth_step((std::abs(place.across) - 0.5) / 0.4);
-  Rise rise = {(place.upper ? 0.1 : 0.1 + 0.1 * corner) * to_throat, 0.35 * to_throat};
+  constexpr double corner_from = 0.5, corner_to = 0.9;  // of half the width of the mouth
+  double fraction = 0.1;
+  if (!place.upper)
+    fraction *= 1 + smooth_step((std::abs(place.across) - corner_from) / (corner_to - corner_from));
+  Rise rise = {fraction * to_throat, 0.35 * to_throat};
   for (double up = 0; place.upper && up < rise.rises_mm; up += 0.5)
     if (space.bone.at(start.x(), start.y() + up) < fornix) {
       rise.rises_mm = std::max(1.0, up - MouthSpace::within_mm);

@@ -134,9 +134,11 @@ std::vector<float> SkinFolds::depths(const Line& line, std::span<const Vector3f>
       surplus[i] = 0.25f * before[i > 0 ? i - 1 : 0] + 0.5f * before[i] +
                    0.25f * before[std::min(i + 1, n - 1)];
   }
-  const float least = fold.shared * *std::max_element(surplus.begin(), surplus.end());
+  const auto most = std::max_element(surplus.begin(), surplus.end());
+  for (auto before = surplus.begin(); before != most; ++before)
+    *before = std::max(*before, fold.begun * *most);
   for (std::size_t i = 0; i < n; ++i) {
-    const float asked = fold.gain * std::max(surplus[i], least);
+    const float asked = fold.gain * surplus[i];
     depth[i] = fold.samples[i].fraction * fold.limit_mm * (1 - std::exp(-asked / fold.limit_mm));
   }
   return depth;

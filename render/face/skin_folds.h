@@ -9,8 +9,9 @@
 namespace condyle {
 
 /// Folds of a displayed face, in pictures alone: the skin is displaced along the lines of
-/// find_fold_lines in proportion to its compression across them relative to rest. At rest, and
-/// where the skin is stretched, nothing changes, bit for bit. Deterministic.
+/// find_fold_lines in proportion to its compression across them relative to rest; a nasolabial fold
+/// continues up to the ala. At rest, and along lines that are stretched, nothing changes, bit for
+/// bit. Deterministic.
 class SkinFolds {
  public:
   /// Darkening of a vertex in a groove.

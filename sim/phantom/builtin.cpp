@@ -14,8 +14,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int surface_version =
-    15;  // increment when surfaces or landmarks change without a change of the solids
+constexpr int surface_version = 15;  // increment when surfaces, their colours or landmarks change
+                                     // without a change of the solids
 
 /// Hash of the recipes' values at scattered points, so that a changed recipe changes the key.
 std::uint64_t recipe_key() {

@@ -27,12 +27,14 @@ Eigen::Vector3f skin_color(const Vector3d& at) {
   static const Lookup brow_height({8, 10, 20, 34, 46, 50}, {31, 31.5, 34.5, 36.6, 33.2, 32}),
       brow_width({8, 12, 20, 34, 46, 50}, {.6, 2.6, 2.9, 2.2, .9, .5}),
       hair_line({-95, -80, -50, -20, 30, 100}, {78, 74, 48, 18, -22, -38});
-  static const Primitive lids = lid_opening(), alar_crease = tube({{17, -99.5, -12.5},
-                                                                   {17.8, -98.3, -16.5},
-                                                                   {18, -97, -20.5},
-                                                                   {16.6, -96.8, -25.5},
-                                                                   {12.5, -97, -28}},
-                                                                  {-.9, .1, .3, -.3, -1});
+  static const Primitive lids = lid_opening();
+  // A radius is an offset of the distance: negative, it weakens the shade.
+  static const Primitive alar_crease = tube({{17, -99.5, -12.5},
+                                             {17.8, -98.3, -16.5},
+                                             {18, -97, -20.5},
+                                             {16.6, -96.8, -25.5},
+                                             {12.5, -97, -28}},
+                                            {-.9, .1, .3, -.3, -1});
   const double x = std::abs(at.x()), y = at.y(), z = at.z();
   const Vector3d p(x, y, z);
   Vector3d color(.855, .665, .575);
@@ -50,9 +52,9 @@ Eigen::Vector3f skin_color(const Vector3d& at) {
   mix({.83, .49, .43}, .37 * blood * spot({44, -74, -16}, {21, 28, 18}));  // cheek
   mix({.83, .49, .43}, .34 * blood * spot({0, -116, -16}, {13, 10, 10}));  // nose
   mix({.82, .47, .42}, .25 * blood * spot({0, -97, -82}, {12, 9, 8}));     // chin
-  if (x < 26 && y < -88)
+  if (x < 26 && y < -88)                                                   // alar crease
     mix({.60, .36, .30}, .6 * std::exp(-std::pow(alar_crease.distance(p) / 1.5, 2)));
-  if (x > 68)
+  if (x > 68)  // ear
     mix({.83, .52, .45}, .5 * smooth_step((x - 68) / 8) * spot({84, 14, 0}, {14, 25, 38}));
   mix({.70, .50, .44}, .35 * spot({31, -84, 16}, {17, 14, 9}));  // around the eye
   mix({.64, .50, .50}, .34 * spot({27, -88, 3}, {13, 9, 5}));    // veins below it

@@ -30,7 +30,9 @@ inline std::optional<Case> case_ubc(Driven driven = Driven::no) {
   return import_meshes(request);
 }
 
-inline std::optional<Case> case_badin() {
+/// Its face, with its own muscles, only on request: most checks are of bones.
+enum class Faced { no, yes };
+inline std::optional<Case> case_badin(Faced faced = Faced::no) {
   const auto folder = real_data() / "case-badin";
   if (!std::filesystem::exists(folder)) return std::nullopt;
   ImportRequest request;
@@ -38,6 +40,10 @@ inline std::optional<Case> case_badin() {
                    {Role::mandible, folder / "mandible.ply"}};
   request.landmarks = folder / "markers.csv";
   request.name = "case-badin";
+  if (faced == Faced::yes) {
+    request.files.emplace_back(Role::face, folder / "face_skin.ply");
+    request.face_muscles = folder / "face_muscles.csv";
+  }
   return import_meshes(request);
 }
 

@@ -79,16 +79,12 @@ TEST(MouthLining, StaysBehindLipsThatComeForwardAndYieldsToThoseThatGoBack) {
 }
 
 TEST(MouthLining, StaysBehindTheSkinOfARealSmile) {
-  if (!std::filesystem::exists(test::real_data() / "case-badin"))
-    GTEST_SKIP() << "real anatomy absent";
-  const auto folder = test::real_data() / "case-badin";
-  OpenedPatient real(import_meshes({.files = {{Role::maxilla, folder / "maxilla_capped.ply"},
-                                              {Role::mandible, folder / "mandible.ply"},
-                                              {Role::face, folder / "face_skin.ply"}},
-                                    .landmarks = folder / "markers.csv",
-                                    .name = "badin",
-                                    .face_muscles = folder / "face_muscles.csv"}));
+  auto patient = test::case_badin(test::Faced::yes);
+  if (!patient) GTEST_SKIP() << "real anatomy absent";
+  OpenedPatient real(std::move(*patient));
+  ASSERT_NE(real.prepared.lining(), nullptr);
   const MouthLining& lining = *real.prepared.lining();
+  ASSERT_FALSE(lining.cut);
   const SkinFolds folds(real.rest, real.normals, real.face->mesh.triangles, lining.rim);
   const CheekThickness cheeks(real.rest, real.normals, lining.rim, real.parts);
   for (const char* words : {"smile 0.5", "smile 1"}) {
@@ -99,7 +95,7 @@ TEST(MouthLining, StaysBehindTheSkinOfARealSmile) {
     std::vector<Eigen::Vector3f> rim;
     for (const int v : lining.rim) rim.push_back(places[static_cast<std::size_t>(v)]);
     const auto now = places_now(lining, rim, frame.poses[real.scene.patient.jaw.lower_arch]);
-    std::vector<Eigen::Vector3f> inner;  // of the lining's triangles
+    std::vector<Eigen::Vector3f> inner;  // of the lining's triangles, without those at the rim
     for (const auto& t : lining.triangles)
       for (const auto& [a, b] : {std::pair{0.5f, 0.5f}, {0.5f, 0.f}, {0.f, 0.5f}, {0.33f, 0.33f}})
         if (t.minCoeff() >= std::ssize(rim))
@@ -109,12 +105,19 @@ TEST(MouthLining, StaysBehindTheSkinOfARealSmile) {
     TriMesh shown{{}, lining.face, {}};
     for (const auto& p : places) shown.vertices.push_back(p.cast<double>());
     const TriangleTree skin(shown);
-    double nearest = 100;  // mm behind the skin, at the sides of the mouth
+    // Seen from the front, at the sides of the mouth: beyond `deepest_mm` the mouth is open.
+    constexpr double side_mm = 20, far_mm = 60, deepest_mm = 3;
+    double nearest = far_mm;  // behind the skin; negative where it is pierced
+    int covered = 0;
     for (const auto& p : inner) {
-      const auto skin_before = skin.ray_cast(p.cast<double>(), -Eigen::Vector3d::UnitY(), nearest);
-      if (std::abs(p.x()) > 20 && skin_before) nearest = skin_before->distance;
+      const Eigen::Vector3d in = Eigen::Vector3d::UnitY();
+      const auto hit = skin.ray_cast(p.cast<double>() - far_mm * in, in, far_mm + deepest_mm);
+      if (std::abs(p.x()) < side_mm || !hit) continue;
+      nearest = std::min(nearest, far_mm - hit->distance);
+      ++covered;
     }
-    EXPECT_GT(nearest, 0.4) << words;
+    EXPECT_GT(covered, 500) << words;
+    EXPECT_GT(nearest, 0.4) << words;  // 0.7; another course of frames differs by tenths
   }
 }
 

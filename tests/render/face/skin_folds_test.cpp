@@ -1,5 +1,5 @@
-// Skin folds where it is compressed, in pictures alone; at rest and where it is stretched the drawn
-// face is that without folds, bit for bit.
+// Skin folds along lines across which it is compressed, in pictures alone; at rest and where it is
+// stretched the drawn face is that without folds, bit for bit.
 #include "render/face/skin_folds.h"
 
 #include <algorithm>
@@ -119,12 +119,16 @@ TEST(SkinFoldsTest, TheNasolabialFoldOfASmileReachesTheAla) {
         deepest = std::max(deepest, (places[v] - smooth[v]).norm());
     return deepest;
   };
+  int folds = 0;
   for (const FoldLine& line : find_fold_lines(head.rest, head.normals, lining->rim)) {
     if (line.far_mm == 0 || line.samples.front().point.x() < 0) continue;  // the left fold alone
+    ++folds;
     float deepest = 0;
     for (const auto& sample : line.samples) deepest = std::max(deepest, deepest_at(sample.point));
+    // begun * fraction at the first sample is a third; coarse vertices miss some of it.
     EXPECT_GT(deepest_at(line.samples.front().point), 0.25f * deepest);
   }
+  EXPECT_EQ(folds, 1);
 }
 
 TEST(SkinFoldsTest, PursedLipsHaveLinesAroundThem) {
@@ -171,28 +175,31 @@ TEST(SkinFoldsTest, TheForeheadHasThreeLinesAboveTheGlabellaWhereThereIsOne) {
   }
 }
 
-TEST(SkinFoldsTest, BrowsDrawnTogetherFoldBetweenThem) {
+TEST(SkinFoldsTest, BrowsDrawnTogetherHaveFrownLinesBetweenThem) {
   OpenedPatient p(builtin_patient({}, {}), true);
   const SkinFolds folds(p.rest, p.normals, p.face->mesh.triangles, p.prepared.lining()->rim);
-  const Vector3f glabella = p.scene.patient.landmarks.find("glabella").value().cast<float>();
-  const auto deepest = [&](const char* words) {  // at the left and at the right
-    const auto smooth = p.drawn(p.frame(words));
-    auto places = smooth;
-    folds.apply(places);
-    std::array<float, 2> most{};
-    for (std::size_t v = 0; v < places.size(); ++v) {
-      const Vector3f off = p.rest[v] - glabella;
-      if (std::abs(off.x()) < 2 || std::abs(off.x()) > 10 || off.z() < -8 || off.z() > 12) continue;
-      float& side = most[off.x() > 0 ? 0 : 1];
-      side = std::max(side, (places[v] - smooth[v]).norm());
-    }
-    return most;
-  };
-  const auto little = deepest("AU4 0.15"), full = deepest("AU4 1"), opened = deepest("open 10");
+  const Vector3f glabella = p.scene.patient.landmarks.find("soft_glabella").value().cast<float>();
+  const auto deepest =
+      [&](const char* words) {  // below the lines across the forehead, at the left and at the right
+        const auto smooth = p.drawn(p.frame(words));
+        auto places = smooth;
+        folds.apply(places);
+        std::array<float, 2> most{};
+        for (std::size_t v = 0; v < places.size(); ++v) {
+          const Vector3f off = p.rest[v] - glabella;
+          if (std::abs(off.x()) < 2 || std::abs(off.x()) > 10 || off.z() < -8 || off.z() > 4)
+            continue;
+          float& side = most[off.x() > 0 ? 0 : 1];
+          side = std::max(side, (places[v] - smooth[v]).norm());
+        }
+        return most;
+      };
+  const auto little = deepest("AU4 0.15"), full = deepest("AU4 1"),
+             other = deepest("AU6 1 and open 20");
   for (const std::size_t side : {0u, 1u}) {
     EXPECT_GT(little[side], 0.05f);
     EXPECT_GT(full[side], little[side] + 0.1f);
-    EXPECT_EQ(opened[side], 0);
+    EXPECT_EQ(other[side], 0);
   }
 }
 

@@ -267,5 +267,17 @@ TEST(Phantom, HairIsCutToTheSkinAboveForeheadAndEarAndOnNeither) {
   }
 }
 
+TEST(Phantom, TheCreaseBesideTheAlaIsShadedAndTheEarHardlyRedderThanTheCheek) {
+  const auto red = [](const Eigen::Vector3f& color) { return color.x() / color.y(); };
+  for (const double side : {-1, 1}) {
+    const Eigen::Vector3f crease = skin_color({side * 18, -97, -20.5}),
+                          beside = skin_color({side * 26, -93, -22}),
+                          cheek = skin_color({side * 44, -74, -16}),
+                          ear = skin_color({side * 84, 14, 0});
+    EXPECT_LT(crease.sum(), 0.85f * beside.sum()) << side;
+    EXPECT_LT(red(ear), 1.1f * red(cheek)) << side;
+  }
+}
+
 }  // namespace
 }  // namespace condyle

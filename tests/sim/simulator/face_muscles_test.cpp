@@ -221,14 +221,7 @@ TEST(FaceMuscles, LipsCloseAndTheLowerLipRisesToTheUpperTeeth) {
 }
 
 const MuscledFace& measured_face() {
-  const auto folder = test::real_data() / "case-badin";
-  static const MuscledFace face(
-      true, import_meshes({.files = {{Role::maxilla, folder / "maxilla_capped.ply"},
-                                     {Role::mandible, folder / "mandible.ply"},
-                                     {Role::face, folder / "face_skin.ply"}},
-                           .landmarks = folder / "markers.csv",
-                           .name = "badin",
-                           .face_muscles = folder / "face_muscles.csv"}));
+  static const MuscledFace face(true, test::case_badin(test::Faced::yes).value());
   return face;
 }
 
