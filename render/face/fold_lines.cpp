@@ -235,7 +235,8 @@ std::vector<FoldLine> find_fold_lines(std::span<const Vector3f> rest,
       return Vector2f(corner + unit * Vector2f(s * out, up));
     };
     if (const auto ala = tip ? face.alar_crease(side, *tip) : std::nullopt) {
-      const Vector2f start(ala->x() + s * unit, ala->z() + 3 * unit);
+      // On the cheek: a line that steps down from the ala would tear the skin.
+      const Vector2f start(ala->x() + 5 * s * unit, ala->z());
       const Vector2f between = 0.5f * (start + beside(11, 3)) + unit * Vector2f(s * 2, 1);
       add(std::array{start, between, beside(11, 3), beside(10, -10)}, s,
           {.gauge_mm = 8,

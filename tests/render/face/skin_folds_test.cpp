@@ -155,6 +155,18 @@ TEST(SkinFoldsTest, PursedLipsHaveLinesAroundThem) {
   EXPECT_GT(below, 15);
 }
 
+TEST(SkinFoldsTest, NasolabialLinesOfThePatientRunOnTheCheekWithoutSteps) {
+  const OpenedPatient& p = opened_patient();
+  int lines = 0;
+  for (const FoldLine& line : find_fold_lines(p.rest, p.normals, p.prepared.lining()->rim)) {
+    if (line.far_mm == 0) continue;
+    ++lines;
+    for (std::size_t i = 0; i + 1 < line.samples.size(); ++i)  // 2.5 mm apart in front view
+      EXPECT_LT((line.samples[i + 1].point - line.samples[i].point).norm(), 4) << i;
+  }
+  EXPECT_EQ(lines, 2);
+}
+
 TEST(SkinFoldsTest, TheForeheadHasThreeLinesAboveTheGlabellaWhereThereIsOne) {
   const OpenedPatient& p = opened_patient();
   const float glabella = static_cast<float>(p.scene.patient.landmarks.find("glabella").value().z());
