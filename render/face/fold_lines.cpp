@@ -245,7 +245,7 @@ std::vector<FoldLine> find_fold_lines(std::span<const Vector3f> rest,
            .limit_mm = 2.5f,
            .groove_mm = 2.2f,
            .bulge = 0.9f,
-           .begun = 0.6f},
+           .continued = 0.6f},
           0.55f);
     }
     add(std::array{beside(3.5f, 5), beside(4.5f, 0), beside(4, -6)}, s,

@@ -22,7 +22,9 @@ struct FoldLine {
   float limit_mm = 2;   // largest depth
   float groove_mm = 2;  // half width of the groove
   float bulge = 0.6f;   // height of the skin beside the groove over the depth
-  float begun = 0;      // surplus at least, from the first sample to where it is largest, over that
+  /// Least surplus between the first sample and the deepest one, over the largest: a fold that is
+  /// deep anywhere continues to the line's beginning.
+  float continued = 0;
 };
 
 /// Nasolabial folds, creases beside the corners of the mouth, lines around the lips, across the

@@ -134,9 +134,9 @@ std::vector<float> SkinFolds::depths(const Line& line, std::span<const Vector3f>
       surplus[i] = 0.25f * before[i > 0 ? i - 1 : 0] + 0.5f * before[i] +
                    0.25f * before[std::min(i + 1, n - 1)];
   }
-  const auto most = std::max_element(surplus.begin(), surplus.end());
-  for (auto before = surplus.begin(); before != most; ++before)
-    *before = std::max(*before, fold.begun * *most);
+  const auto largest = std::max_element(surplus.begin(), surplus.end());
+  for (auto own = surplus.begin(); own != largest; ++own)
+    *own = std::max(*own, fold.continued * *largest);
   for (std::size_t i = 0; i < n; ++i) {
     const float asked = fold.gain * surplus[i];
     depth[i] = fold.samples[i].fraction * fold.limit_mm * (1 - std::exp(-asked / fold.limit_mm));

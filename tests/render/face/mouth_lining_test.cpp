@@ -3,7 +3,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <filesystem>
 #include <map>
 #include <numbers>
 #include <utility>
@@ -12,7 +11,6 @@
 #include "render/face/skin_folds.h"
 #include "render/mesh/vertex_normals.h"
 #include "render/scene/mouth_cavity.h"
-#include "sim/case/case_io.h"
 #include "tests/render/face/opened_patient.h"
 #include "tests/render/scene_fixture.h"
 #include "tests/support/real_cases.h"

@@ -125,7 +125,7 @@ TEST(SkinFoldsTest, TheNasolabialFoldOfASmileReachesTheAla) {
     ++folds;
     float deepest = 0;
     for (const auto& sample : line.samples) deepest = std::max(deepest, deepest_at(sample.point));
-    // begun * fraction at the first sample is a third; coarse vertices miss some of it.
+    // continued * fraction at the first sample is a third; coarse vertices miss some of it.
     EXPECT_GT(deepest_at(line.samples.front().point), 0.25f * deepest);
   }
   EXPECT_EQ(folds, 1);
@@ -191,21 +191,20 @@ TEST(SkinFoldsTest, BrowsDrawnTogetherHaveFrownLinesBetweenThem) {
   OpenedPatient p(builtin_patient({}, {}), true);
   const SkinFolds folds(p.rest, p.normals, p.face->mesh.triangles, p.prepared.lining()->rim);
   const Vector3f glabella = p.scene.patient.landmarks.find("soft_glabella").value().cast<float>();
-  const auto deepest =
-      [&](const char* words) {  // below the lines across the forehead, at the left and at the right
-        const auto smooth = p.drawn(p.frame(words));
-        auto places = smooth;
-        folds.apply(places);
-        std::array<float, 2> most{};
-        for (std::size_t v = 0; v < places.size(); ++v) {
-          const Vector3f off = p.rest[v] - glabella;
-          if (std::abs(off.x()) < 2 || std::abs(off.x()) > 10 || off.z() < -8 || off.z() > 4)
-            continue;
-          float& side = most[off.x() > 0 ? 0 : 1];
-          side = std::max(side, (places[v] - smooth[v]).norm());
-        }
-        return most;
-      };
+  // Below the lines across the forehead, at the left and at the right.
+  const auto deepest = [&](const char* words) {
+    const auto smooth = p.drawn(p.frame(words));
+    auto places = smooth;
+    folds.apply(places);
+    std::array<float, 2> most{};
+    for (std::size_t v = 0; v < places.size(); ++v) {
+      const Vector3f off = p.rest[v] - glabella;
+      if (std::abs(off.x()) < 2 || std::abs(off.x()) > 10 || off.z() < -8 || off.z() > 4) continue;
+      float& side = most[off.x() > 0 ? 0 : 1];
+      side = std::max(side, (places[v] - smooth[v]).norm());
+    }
+    return most;
+  };
   const auto little = deepest("AU4 0.15"), full = deepest("AU4 1"),
              other = deepest("AU6 1 and open 20");
   for (const std::size_t side : {0u, 1u}) {

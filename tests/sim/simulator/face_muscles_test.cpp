@@ -7,7 +7,6 @@
 #include <limits>
 
 #include "engine/mesh/triangle_tree.h"
-#include "sim/case/case_io.h"
 #include "sim/muscles/default_face_muscles.h"
 #include "sim/muscles/expression.h"
 #include "sim/tissue/lips.h"
