@@ -447,7 +447,8 @@ std::vector<std::string> physiology_warnings(const MotionSeries& series) {
   const bool opens = std::any_of(series.phases.begin(), series.phases.end(),
                                  [](const MotionPhase& p) { return p.name == "opening"; });
   const double opening = extreme(all, "opening").value;
-  if (opens && series.phases.size() <= 3 && opening > 5 && opening < 30)
+  constexpr double limited_mm = 30, rounding_mm = 0.05;
+  if (opens && series.phases.size() <= 3 && opening > 5 && opening < limited_mm - rounding_mm)
     warnings.push_back(fmt::format(
         "opening of {:.1f} mm: a maximum opening below 30 mm counts as limited", opening));
   return warnings;

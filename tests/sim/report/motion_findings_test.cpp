@@ -194,6 +194,8 @@ TEST(Warnings, NameWhatNoJawCanDoAndAreAbsentOtherwise) {
     return physiology_warnings(series_of(scene, motion));
   };
   expect_warning(opened(20), "counts as limited");
+  for (const std::string& warning : opened(29.97))  // 30.0 mm, as printed
+    EXPECT_EQ(warning.find("counts as limited"), std::string::npos) << warning;
 }
 
 TEST(Warnings, ReportUnequalCondylarTravelInAStraightOpening) {
