@@ -159,6 +159,10 @@ double WedgeEnergy::energy(const Nodes& x, Nodes* gradient) {
     sum += k * off.squaredNorm();
     if (gradient) (*gradient)[mesh_.anchor_node[i]] += 2 * k * off;
   }
+  for (std::size_t i = 0; i < loads_.node_force.size(); ++i) {
+    sum -= loads_.node_force[i].dot(x[i]);
+    if (gradient) (*gradient)[i] -= loads_.node_force[i];
+  }
   for (const ContactSpring& row : loads_.contacts) {
     const double gap = row.gap(x);
     if (gap >= 0) continue;

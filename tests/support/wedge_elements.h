@@ -45,7 +45,8 @@ class WedgeBody {
   std::vector<Wedge> wedges_;
 };
 
-/// The body with anchors and contacts, all times mesh.lambda, as SpringPrismEnergy has them.
+/// The body with anchors, node forces and contacts, all times mesh.lambda, as SpringPrismEnergy has
+/// them.
 class WedgeEnergy final : public Objective {
  public:
   WedgeEnergy(const WedgeBody& body, const SpringPrismMesh& mesh, const MeshLoads& loads,
