@@ -1,8 +1,9 @@
 #include "tests/support/wedge_elements.h"
 
-#include <Eigen/Dense>
+#include <Eigen/LU>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 #include "engine/core/parallel.h"
 
@@ -13,7 +14,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 using Corners = Eigen::Matrix<double, 3, 6>;
 
-constexpr int chunks = 8;
+constexpr int chunks = 8;  // fixed: sums must not depend on the number of threads
 
 Corners corners_of(const std::array<int, 6>& node, const Nodes& x) {
   Corners at;
@@ -49,17 +50,18 @@ Material Material::of(double young_MPa, double poisson) {
 
 WedgeBody::WedgeBody(const Nodes& rest, const std::vector<std::array<int, 6>>& wedges,
                      const std::vector<Material>& material) {
-  const double third = 1 / std::sqrt(3.0);
+  const double gauss = 1 / std::sqrt(3.0);
   for (std::size_t i = 0; i < wedges.size(); ++i) {
     Wedge wedge{wedges[i], {}, {}, 0, material[i]};
     const Corners at = corners_of(wedges[i], rest);
     int p = 0;
-    for (const double t : {-third, third})
+    for (const double t : {-gauss, gauss})
       for (const auto& [r, s] :
            {std::array{1.0 / 6, 1.0 / 6}, {2.0 / 3, 1.0 / 6}, {1.0 / 6, 2.0 / 3}}) {
         const Corners unit = unit_slopes(r, s, t);
         const Matrix3d to_rest = at * unit.transpose();
         wedge.weight[p] = to_rest.determinant() / 6;
+        if (!(wedge.weight[p] > 0)) throw std::invalid_argument("a wedge is inside out");
         wedge.slope[p] = to_rest.inverse().transpose() * unit;
         wedge.volume += wedge.weight[p++];
       }

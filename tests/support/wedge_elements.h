@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <vector>
 
@@ -15,17 +16,19 @@ struct Material {
   static Material of(double young_MPa, double poisson);
 };
 
-/// Six-node wedges with six integration points of a compressible neo-Hookean material and one mean
-/// dilatation for each element, so that nearly incompressible tissue does not lock:
+/// Six-node wedges with six integration points. Compressible neo-Hookean material, whose volume
+/// term has the mean dilatation of the element, so that nearly incompressible tissue does not lock:
 /// W = mu/2 (tr F'F - 3 - 2 ln det F) + lambda/2 (mean det F - 1)^2.
-/// source: Bonet and Wood, Nonlinear Continuum Mechanics for Finite Element Analysis, 2008.
+/// source: after Bonet and Wood, Nonlinear Continuum Mechanics for Finite Element Analysis, 2008.
 class WedgeBody {
  public:
-  /// Corners 0 1 2 counter-clockwise seen from outside, 3 4 5 below them; one material for each.
+  /// Corners 0 1 2 counter-clockwise seen from outside, 3 4 5 below them; one material for each
+  /// wedge. throws: std::invalid_argument for a wedge that is inside out at an integration point.
   WedgeBody(const Nodes& rest, const std::vector<std::array<int, 6>>& wedges,
             const std::vector<Material>& material);
 
-  /// mJ; infinite where an element is turned inside out. Adds its gradient where one is given.
+  /// mJ; infinite where an element is inside out at an integration point. Adds its gradient where
+  /// one is given.
   double energy(const Nodes& x, Nodes* gradient, int threads) const;
   Objective::Curvature curvature(const Nodes& x, const Nodes& d, int threads) const;
 
@@ -46,7 +49,7 @@ class WedgeBody {
 };
 
 /// The body with anchors, node forces and contacts, all times mesh.lambda, as SpringPrismEnergy has
-/// them.
+/// them; without muscles.
 class WedgeEnergy final : public Objective {
  public:
   WedgeEnergy(const WedgeBody& body, const SpringPrismMesh& mesh, const MeshLoads& loads,

@@ -184,7 +184,7 @@ TEST(ClosedForm, ABarHangsDownByItsWeight) {
   }
 }
 
-/// The same of the finite elements that faces are compared with.
+/// The same for the finite elements that faces are compared with.
 TEST(ClosedForm, ABarOfFiniteElementsHangsDownByItsWeight) {
   const BoxSize size{24, 6, 3, 3, 3};
   LayerMaterial material = soft;

@@ -4,8 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
+#include <vector>
 
 namespace condyle::fe {
 namespace {
@@ -111,6 +114,45 @@ TEST(WedgeElements, GradientAndCurvatureAreThoseOfTheEnergy) {
   const double bend = (slope(step) - slope(-step)) / (2 * step);
   EXPECT_NEAR(body.curvature(x, d, 1).exact, bend, 1e-6 * std::abs(bend));
   EXPECT_GT(body.curvature(x, d, 1).gauss_newton, 0);
+}
+
+/// With lambda other than a half, a contact of two nodes, an anchor and a force.
+TEST(WedgeElements, SlopesOfTheWholeEnergyAreThoseOfItsValue) {
+  const Block block = irregular_block();
+  const WedgeBody body = body_of(block);
+  SpringPrismMesh mesh;
+  mesh.node_count = static_cast<int>(block.rest.size());
+  mesh.lambda = 0.3;
+  mesh.anchor_node = {3};
+  mesh.anchor_stiffness = {0.7};
+  MeshLoads loads;
+  loads.anchor_target = {block.rest[3] + Vector3d(0.2, 0.1, 0)};
+  loads.node_force.assign(block.rest.size(), Vector3d(0, 0, -0.01));
+  ContactSpring pressed = ContactSpring::of_node(7, Vector3d(0.6, 0, 0.8), 100, 2);
+  pressed.node[1] = 8;
+  pressed.weight = {0.4, 0.6};
+  pressed.count = 2;
+  loads.contacts = {pressed, ContactSpring::of_node(9, Vector3d::UnitZ(), -100, 2)};
+  WedgeEnergy energy(body, mesh, loads, 2);
+  Nodes d, gradient;
+  for (std::size_t i = 0; i < block.rest.size(); ++i)
+    d.emplace_back(std::sin(4.0 * i), std::sin(5.0 * i), std::sin(6.0 * i));
+  constexpr double step = 1e-4;
+  const auto moved = [&](double t) {
+    Nodes x = block.rest;
+    for (std::size_t i = 0; i < x.size(); ++i) x[i] += t * d[i];
+    return x;
+  };
+  const auto slope = [&](double t) {
+    energy.value_and_gradient(moved(t), gradient);
+    double sum = 0;
+    for (std::size_t i = 0; i < d.size(); ++i) sum += gradient[i].dot(d[i]);
+    return sum;
+  };
+  const double by_value = (energy.value(moved(step)) - energy.value(moved(-step))) / (2 * step);
+  EXPECT_NEAR(slope(0), by_value, 1e-6 * std::abs(by_value));
+  const double bend = (slope(step) - slope(-step)) / (2 * step);
+  EXPECT_NEAR(energy.curvature(block.rest, d).exact, bend, 1e-6 * std::abs(bend));
 }
 
 TEST(WedgeElements, AnElementTurnedInsideOutHasInfiniteEnergy) {

@@ -1,16 +1,23 @@
-// The face as shipped, sliding on bone and teeth, beside finite elements on another mesh of the
-// same tissue: twice the nodes, the same materials, anchors by area and one-sided contact.
-// Smoothing of displacements without any elasticity must not pass as well.
+// The displayed face in equilibrium, sliding on bone and teeth, compared with finite elements on a
+// finer mesh of the same tissue. Both have the same materials, supports, contact search and
+// display; they differ in mesh, elasticity and minimisation. Displacements that are smoothed
+// without any elasticity must fail.
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <map>
 #include <memory>
 #include <set>
+#include <span>
 #include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
 
 #include "engine/minimize/minimize.h"
 #include "engine/tissue/hessian_factor.h"
@@ -20,6 +27,7 @@
 #include "sim/prediction/predictor.h"
 #include "sim/tissue/lips.h"
 #include "sim/tissue/model.h"
+#include "sim/tissue/tissue_layers.h"
 #include "tests/support/builtin.h"
 #include "tests/support/real_cases.h"
 #include "tests/support/wedge_elements.h"
@@ -36,13 +44,16 @@ constexpr int threads = 2;
 /// The tissue of a model as finite elements, followed along a path of the bodies from rest.
 class ReferenceTissue {
  public:
-  explicit ReferenceTissue(const TissueModel& model)
+  ReferenceTissue(const Case& patient, const TissueModel& model)
       : model_(model),
-        body_(model.mesh->rest, model.mesh->elements.prisms, materials(*model.mesh)),
-        near_stiffness_(model.mesh->elements) {
+        body_(model.mesh->rest, model.mesh->elements.prisms,
+              materials(layers_of(patient.tissue), *model.mesh)),
+        preconditioner_mesh_(model.mesh->elements) {
+    EXPECT_TRUE(!model.planned && model.support.held_force.empty()) << "prestress is left out";
     // A preconditioner that is as stiff in compression as in tension.
-    for (double& k : near_stiffness_.stiffness) k *= 0.5 * (1 + near_stiffness_.compression_ratio);
-    near_stiffness_.compression_ratio = 1;
+    for (double& k : preconditioner_mesh_.stiffness)
+      k *= 0.5 * (1 + preconditioner_mesh_.compression_ratio);
+    preconditioner_mesh_.compression_ratio = 1;
   }
 
   /// The displayed face in equilibrium at the end.
@@ -56,8 +67,7 @@ class ReferenceTissue {
   }
 
  private:
-  static std::vector<fe::Material> materials(const TissueMesh& mesh) {
-    const LayerStack stack = default_layers(3);
+  static std::vector<fe::Material> materials(const LayerStack& stack, const TissueMesh& mesh) {
     const std::size_t layers = static_cast<std::size_t>(mesh.sheets) - 1;
     std::vector<fe::Material> of_wedge;
     for (std::size_t p = 0; p < mesh.elements.prisms.size(); ++p) {
@@ -75,20 +85,20 @@ class ReferenceTissue {
     const std::vector<Pose> from_mesh = poses_from_mesh(model_, X_CB);
     MeshLoads loads = loads_at(model_, X_CB);
     OpeningPredictor with_bodies = model_.opening;
-    with_bodies.path = nullptr;  // which the springs found
+    with_bodies.path = nullptr;  // it was solved with springs
     Nodes x = with_bodies.extrapolated(state_.nodes, model_.support.node, state_.X_CB, X_CB);
     for (std::size_t i = 0; i < contacts_.size() && i < model_.contact->obstacles.size(); ++i) {
       const BodyId body = model_.contact->obstacles[i].body;
       move_contacts(pose_in(X_CB, body) * pose_in(state_.X_CB, body).inverse(), contacts_[i]);
     }
     fe::WedgeEnergy energy(body_, model_.mesh->elements, loads, threads);
-    ASSERT_TRUE(std::isfinite(energy.value(x)));
+    if (!std::isfinite(energy.value(x))) x = state_.nodes;
     std::unique_ptr<HessianFactor> factor;
     int since = 0;
     MinimizeSettings settings;
-    settings.tolerance_mm = last ? 2e-3 : 2e-2;
+    settings.tolerance_mm = last ? 1e-3 : 2e-2;
     settings.max_iterations = iterations;
-    const double error_mm = last ? 0.01 : 0.1;
+    const double error_mm = last ? 5e-3 : 0.1;
     const ContactSolveResult result = solve_contact(
         [&](const Nodes& at) {
           return find_tissue_contacts(*model_.contact, model_.mesh->own_stiffness, from_mesh, at,
@@ -96,10 +106,10 @@ class ReferenceTissue {
         },
         [&](bool) {
           if (!factor)
-            factor = std::make_unique<HessianFactor>(near_stiffness_, loads, model_.mesh->sheets, x,
-                                                     threads);
+            factor = std::make_unique<HessianFactor>(preconditioner_mesh_, loads,
+                                                     model_.mesh->sheets, x, threads);
           if (since > before_refactoring) {
-            factor->refactor(near_stiffness_, loads, x, threads);
+            factor->refactor(preconditioner_mesh_, loads, x, threads);
             since = 0;
           }
           const MinimizeResult solved = minimize(energy, *factor, settings, x);
@@ -122,12 +132,12 @@ class ReferenceTissue {
 
   const TissueModel& model_;
   fe::WedgeBody body_;
-  SpringPrismMesh near_stiffness_;
+  SpringPrismMesh preconditioner_mesh_;
   TissueState state_;
   ContactLists contacts_;
 };
 
-/// The face as Condyle moves it.
+/// The face as Condyle moves it, in equilibrium at the end.
 Face shipped(const TissueModel& model, const Path& path) {
   TissueState state = rest_tissue(model);
   TissueWarmStart warm;
@@ -140,8 +150,8 @@ Face shipped(const TissueModel& model, const Path& path) {
   return face;
 }
 
-/// The face whose displacements have the least differences over the edges of the mesh, drawn to
-/// those of the anchors with a weight: no elasticity and no contact.
+/// The face whose displacements have the least sum of squared differences along the edges of the
+/// mesh and, times `weight`, from those of the anchors: no elasticity and no contact.
 Face smoothed(const TissueModel& model, std::span<const Pose> X_CB, double weight) {
   const auto& [elements, rest] = std::tie(model.mesh->elements, model.mesh->rest);
   const MeshLoads loads = loads_at(model, X_CB);
@@ -164,8 +174,9 @@ Face smoothed(const TissueModel& model, std::span<const Pose> X_CB, double weigh
   }
   Eigen::SparseMatrix<double> matrix(elements.node_count, elements.node_count);
   matrix.setFromTriplets(entries.begin(), entries.end());
-  const Eigen::MatrixX3d moved =
-      Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>>(matrix).solve(right);
+  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(matrix);
+  EXPECT_EQ(factor.info(), Eigen::Success);
+  const Eigen::MatrixX3d moved = factor.solve(right);
   TissueState state = rest_tissue(model);
   for (std::size_t i = 0; i < rest.size(); ++i)
     state.nodes[i] = rest[i] + moved.row(static_cast<Eigen::Index>(i)).transpose();
@@ -181,13 +192,14 @@ double quantile(std::vector<double> values, double fraction) {
   return values[static_cast<std::size_t>(fraction * static_cast<double>(values.size() - 1))];
 }
 
-/// Errors of the skin that moves by more than 2 mm.
+/// Errors of the skin that moves by more than 2 mm in either of two faces.
 struct Errors {
   std::vector<double> mm, of_movement, moved_mm;
 
-  bool acceptable() const {
-    return quantile(mm, 0.5) <= 0.5 && quantile(of_movement, 0.5) <= 0.15 &&
-           quantile(mm, 0.95) <= 1.5 && quantile(of_movement, 0.95) <= 0.40;
+  /// The largest of median and 95th percentile, each over its bound: acceptable up to 1.
+  double score() const {
+    return std::max({quantile(mm, 0.5) / 0.5, quantile(of_movement, 0.5) / 0.15,
+                     quantile(mm, 0.95) / 1.5, quantile(of_movement, 0.95) / 0.40});
   }
   std::string text() const {
     char line[160];
@@ -212,10 +224,12 @@ std::string region_of(const Case& patient, const Vector3d& p) {
 }
 
 using ByRegion = std::map<std::string, Errors>;
-ByRegion errors_of(const Case& patient, const Face& rest, const Face& is, const Face& should) {
+ByRegion errors_of(const Case& patient, const Face& rest, const Face& shown,
+                   const Face& reference) {
   ByRegion by_region;
   for (std::size_t i = 0; i < rest.size(); ++i) {
-    const double moved = (should[i] - rest[i]).norm(), error = (is[i] - should[i]).norm();
+    const double moved = std::max((reference[i] - rest[i]).norm(), (shown[i] - rest[i]).norm());
+    const double error = (shown[i] - reference[i]).norm();
     if (moved <= 2) continue;
     for (const std::string& region :
          {std::string("all"), region_of(patient, rest[i].cast<double>())}) {
@@ -228,31 +242,29 @@ ByRegion errors_of(const Case& patient, const Face& rest, const Face& is, const 
   return by_region;
 }
 
-/// One patient with its shipped tissue and the finite elements.
-struct Pair {
+/// One patient with its shipped tissue and a finer one.
+struct Models {
   const Case& patient;
   Case parted;  // with its lips parted
   std::shared_ptr<const TissueModel> tissue, finer;
   Face rest;
 
-  explicit Pair(const Case& whole) : patient(whole), parted(whole) {
+  Models(const Case& whole, int finer_nodes) : patient(whole), parted(whole) {
     part_lips(parted);
     TissueSettings settings{.threads = threads};
     tissue = build_tissue(parted, settings);
-    settings.surface_nodes = 1000;
+    settings.surface_nodes = finer_nodes;
     finer = build_tissue(parted, settings);
     deform_face(*tissue, rest_tissue(*tissue), rest, threads);
+    std::printf("%d nodes, finite elements with %d\n", summary(*tissue).nodes,
+                summary(*finer).nodes);
+    EXPECT_GT(summary(*finer).nodes, 1.8 * summary(*tissue).nodes);
   }
 
   Vector3d condyle(const char* side) const {
     return *patient.landmarks.find(std::string(side) + "_condyle");
   }
-  /// From the condyles to the incisal point.
-  double arm_mm() const {
-    return (*patient.landmarks.find("lower_incisal_point") -
-            0.5 * (condyle("left") + condyle("right")))
-        .norm();
-  }
+  Vector3d incisor() const { return *patient.landmarks.find("lower_incisal_point"); }
   /// A move of the jaw in equal steps; `pose`: at a fraction of it.
   template <class PoseAt>
   Path path(int steps, const PoseAt& pose) const {
@@ -264,84 +276,92 @@ struct Pair {
     }
     return along;
   }
-  /// About the condyles, which begin to translate at 10 mm.
+  /// About the condyles, which translate forward and down from 10 mm on.
   Path opened(double mm) const {
     const Vector3d hinge = 0.5 * (condyle("left") + condyle("right"));
-    return path(static_cast<int>(std::ceil(mm / 2.5)), [&](double fraction) {
+    const double arm = (incisor() - hinge).norm();
+    return path(static_cast<int>(std::ceil(mm / 2.5)), [=](double fraction) {
       Pose X_CM;
-      X_CM.R = Eigen::Quaterniond(Eigen::AngleAxisd(fraction * mm / arm_mm(), Vector3d::UnitX()));
+      X_CM.R = Eigen::Quaterniond(Eigen::AngleAxisd(fraction * mm / arm, Vector3d::UnitX()));
       const double slide = 0.3 * std::max(0.0, fraction * mm - 10);
       X_CM.t = hinge - X_CM.R * hinge + Vector3d(0, -slide, -0.6 * slide);
       return X_CM;
     });
   }
   Path protruded(double mm) const {
-    return path(3, [&](double fraction) {
+    return path(3, [=](double fraction) {
       Pose X_CM;
-      X_CM.t = fraction * Vector3d(0, -mm, -mm / 3);
+      X_CM.t = fraction * mm * Vector3d(0, -3, -1).normalized();
       return X_CM;
     });
   }
-  /// To the left, about the right condyle, parted by 2 mm.
-  Path moved_aside(double mm) const {
-    return path(4, [&](double fraction) {
+  /// To the left, about the left condyle, parted by 2 mm.
+  Path moved_left(double mm) const {
+    const Vector3d pivot = condyle("left");
+    const double arm = (incisor() - pivot).head<2>().norm();
+    return path(4, [=](double fraction) {
       Pose X_CM;
-      X_CM.R = Eigen::Quaterniond(Eigen::AngleAxisd(fraction * mm / arm_mm(), Vector3d::UnitZ()));
-      X_CM.t = condyle("right") - X_CM.R * condyle("right") + Vector3d(0, 0, -2 * fraction);
+      X_CM.R = Eigen::Quaterniond(Eigen::AngleAxisd(fraction * mm / arm, Vector3d::UnitZ()));
+      X_CM.t = pivot - X_CM.R * pivot + Vector3d(0, 0, -2 * fraction);
       return X_CM;
     });
   }
 };
 
-void expect_acceptable(const char* name, const Pair& pair, const Face& is, const Face& should) {
-  for (const auto& [region, errors] : errors_of(pair.patient, pair.rest, is, should)) {
-    std::printf("%-14s %-16s%s\n", name, region.c_str(), errors.text().c_str());
-    if (region == "all") {
-      EXPECT_TRUE(errors.acceptable()) << name << ": " << errors.text();
-    }
-  }
-}
-
-/// One move of the jaw.
+/// A move with the tissues that follow it.
 struct Move {
   const char* name;
   Path path;
+  std::shared_ptr<const TissueModel> tissue, finer;
 };
 
-/// Compares the faces of moves; no weight of smoothing may be acceptable in all of them.
-void compare(const Pair& pair, const std::vector<Move>& moves) {
-  ReferenceTissue reference(*pair.finer);
-  std::vector<Face> truth;
+/// Compares the faces of moves, and those of smoothing with the weight that suits all of them best.
+void compare(const Models& models, const std::vector<Move>& moves) {
+  constexpr std::size_t least_vertices = 100;
+  constexpr double least_failure = 1.2;
+  std::vector<Face> references;
   for (const Move& move : moves) {
-    truth.push_back(reference.followed(move.path));
-    expect_acceptable(move.name, pair, shipped(*pair.tissue, move.path), truth.back());
+    SCOPED_TRACE(move.name);
+    references.push_back(ReferenceTissue(models.patient, *move.finer).followed(move.path));
+    ByRegion errors =
+        errors_of(models.patient, models.rest, shipped(*move.tissue, move.path), references.back());
+    for (const auto& [region, of] : errors)
+      std::printf("%-14s %-16s%s\n", move.name, region.c_str(), of.text().c_str());
+    ASSERT_GE(errors["all"].mm.size(), least_vertices);
+    EXPECT_LE(errors["all"].score(), 1) << errors["all"].text();
   }
-  for (const double weight : {1.0, 3.0, 10.0, 30.0, 1e2, 3e2, 1e3, 1e4, 1e5}) {
-    bool all_acceptable = true;
-    for (std::size_t i = 0; i < moves.size(); ++i) {
-      const Face smooth = smoothed(*pair.tissue, moves[i].path.back(), weight);
-      all_acceptable = all_acceptable &&
-                       errors_of(pair.patient, pair.rest, smooth, truth[i])["all"].acceptable();
-    }
-    EXPECT_FALSE(all_acceptable) << "smoothing with weight " << weight;
+  double best_score = 1e9, best_weight = 0;
+  std::vector<double> best;  // of each move
+  for (double exponent = -1; exponent <= 5; exponent += 0.25) {
+    const double weight = std::pow(10, exponent);
+    std::vector<double> scores;
+    for (std::size_t i = 0; i < moves.size(); ++i)
+      scores.push_back(errors_of(models.patient, models.rest,
+                                 smoothed(*moves[i].tissue, moves[i].path.back(), weight),
+                                 references[i])["all"]
+                           .score());
+    const double score = *std::max_element(scores.begin(), scores.end());
+    ASSERT_TRUE(std::isfinite(score));
+    if (score >= best_score) continue;
+    best_score = score;
+    best_weight = weight;
+    best = scores;
   }
+  std::printf("smoothing, best with weight %g; worst error over its bound:", best_weight);
+  for (std::size_t i = 0; i < moves.size(); ++i) std::printf(" %s %.2f;", moves[i].name, best[i]);
+  std::printf("\n");
+  EXPECT_GT(best_score, least_failure);
 }
 
 TEST(FaceTruth, TheOpenedFaceOfTheBuiltInPatientAgreesWithFiniteElements) {
-  const Pair pair(test::builtin());
-  compare(pair, {{"open 10", pair.opened(10)}});
+  const Models models(test::builtin(), 1000);
+  compare(models, {{"open 10", models.opened(10), models.tissue, models.finer}});
 }
 
 TEST(FaceTruth, ARealFaceAgreesWithFiniteElementsInMovesOfTheJawAndAChinAdvance) {
   const auto real = test::case_badin(test::Faced::yes);
   if (!real) GTEST_SKIP() << "real anatomy absent";
-  const Pair pair(*real);
-  compare(pair, {{"open 5", pair.opened(5)},
-                 {"open 10", pair.opened(10)},
-                 {"open 20", pair.opened(20)},
-                 {"protrude 6", pair.protruded(6)},
-                 {"left 8", pair.moved_aside(8)}});
-
+  const Models models(*real, 2000);
   Plan plan{.name = "chin", .geometry = geometry_of(*real)};
   plan = with_step(plan,
                    CutStep{.osteotomy = "genioplasty", .pieces = {"chin"}, .below_margins = true});
@@ -350,15 +370,35 @@ TEST(FaceTruth, ARealFaceAgreesWithFiniteElementsInMovesOfTheJawAndAChinAdvance)
   plan = with_step(plan, MoveStep{"chin", ExplicitMove{forward}});
   PredictionSettings settings;
   settings.threads = threads;
-  Predictor predictor(*real, settings, pair.tissue);
-  const Prediction prediction = predictor.predict(plan);
-  const OperatedTissue operated = operated_tissue(pair.parted, pair.finer, prediction.operated,
-                                                  plan, settings.stripping, threads);
-  Path path;
+  const Operated operated = Predictor(*real, settings, models.tissue).prepare(plan);
+  const auto tissue_of = [&](const std::shared_ptr<const TissueModel>& whole) {
+    return operated_tissue(models.parted, whole, operated, plan, settings.stripping, threads).model;
+  };
+  Path advanced;
   for (const double fraction : {0.25, 0.5, 0.75, 1.0})
-    path.push_back(poses_at(prediction.operated, fraction));
-  expect_acceptable("chin advance", pair, prediction.after,
-                    ReferenceTissue(*operated.model).followed(path));
+    advanced.push_back(poses_at(operated, fraction));
+
+  const auto jaw = [&](const char* name, const Path& path) {
+    return Move{name, path, models.tissue, models.finer};
+  };
+  compare(models, {jaw("open 5", models.opened(5)),
+                   jaw("open 10", models.opened(10)),
+                   jaw("open 20", models.opened(20)),
+                   jaw("protrude 6", models.protruded(6)),
+                   jaw("left 8", models.moved_left(8)),
+                   {"chin advance", advanced, tissue_of(models.tissue), tissue_of(models.finer)}});
+}
+
+TEST(FaceTruth, FiniteElementsStayAtRest) {
+  const Models models(test::builtin(), 1000);
+  const Face still =
+      ReferenceTissue(models.patient, *models.finer).followed(models.path(1, [](double) {
+        return Pose{};
+      }));
+  float most = 0;
+  for (std::size_t i = 0; i < still.size(); ++i)
+    most = std::max(most, (still[i] - models.rest[i]).norm());
+  EXPECT_LT(most, 0.05);
 }
 
 }  // namespace
