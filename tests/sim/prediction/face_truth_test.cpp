@@ -41,6 +41,12 @@ using Path = std::vector<std::vector<Pose>>;  // of the bodies
 
 constexpr int threads = 2;
 
+Face displayed(const TissueModel& model, const TissueState& state) {
+  Face face;
+  deform_face(model, state, face, threads);
+  return face;
+}
+
 /// The tissue of a model as finite elements, followed along a path of the bodies from rest.
 class ReferenceTissue {
  public:
@@ -61,9 +67,7 @@ class ReferenceTissue {
     state_ = rest_tissue(model_);
     contacts_.clear();
     for (std::size_t i = 0; i < path.size(); ++i) go(path[i], i + 1 == path.size());
-    Face face;
-    deform_face(model_, state_, face, threads);
-    return face;
+    return displayed(model_, state_);
   }
 
  private:
@@ -145,9 +149,7 @@ Face shipped(const TissueModel& model, const Path& path) {
     state = solve_tissue(model, state, X_CB, {.threads = threads}, warm);
   state = solve_to_equilibrium(model, state, warm, {.threads = threads});
   EXPECT_TRUE(state.converged);
-  Face face;
-  deform_face(model, state, face, threads);
-  return face;
+  return displayed(model, state);
 }
 
 /// The face whose displacements have the least sum of squared differences along the edges of the
@@ -181,9 +183,7 @@ Face smoothed(const TissueModel& model, std::span<const Pose> X_CB, double weigh
   for (std::size_t i = 0; i < rest.size(); ++i)
     state.nodes[i] = rest[i] + moved.row(static_cast<Eigen::Index>(i)).transpose();
   state.X_CB.assign(X_CB.begin(), X_CB.end());
-  Face face;
-  deform_face(model, state, face, threads);
-  return face;
+  return displayed(model, state);
 }
 
 double quantile(std::vector<double> values, double fraction) {
@@ -249,13 +249,13 @@ struct Models {
   std::shared_ptr<const TissueModel> tissue, finer;
   Face rest;
 
-  Models(const Case& whole, int finer_nodes) : patient(whole), parted(whole) {
+  Models(const Case& whole, int finer_surface_nodes) : patient(whole), parted(whole) {
     part_lips(parted);
     TissueSettings settings{.threads = threads};
     tissue = build_tissue(parted, settings);
-    settings.surface_nodes = finer_nodes;
+    settings.surface_nodes = finer_surface_nodes;
     finer = build_tissue(parted, settings);
-    deform_face(*tissue, rest_tissue(*tissue), rest, threads);
+    rest = displayed(*tissue, rest_tissue(*tissue));
     std::printf("%d nodes, finite elements with %d\n", summary(*tissue).nodes,
                 summary(*finer).nodes);
     EXPECT_GT(summary(*finer).nodes, 1.8 * summary(*tissue).nodes);
