@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "engine/math/smooth_step.h"
@@ -43,6 +44,18 @@ const GpuMesh::Surface& surface_of(const DrawItem& item, const PictureView& view
 Viewpoint eye_of(const PictureView& view) {
   return {view.view_projection, view.eye.homogeneous(), view.width, view.height};
 }
+
+/// While it exists, surfaces are drawn farther away, the more so the more they slope. For the inner
+/// side of the skin: a sliver of a triangle that a movement turns over lies on its neighbours.
+struct BehindSlivers {
+  BehindSlivers() {
+    glEnable(GL_POLYGON_OFFSET_FILL);
+    glPolygonOffset(1, 2);
+  }
+  ~BehindSlivers() { glDisable(GL_POLYGON_OFFSET_FILL); }
+  BehindSlivers(const BehindSlivers&) = delete;
+  BehindSlivers& operator=(const BehindSlivers&) = delete;
+};
 
 /// Whether the surface buffer can store a part in pictures of this size.
 bool can_store(const DrawItem& item, const PictureView& view) {
@@ -315,6 +328,7 @@ void Passes::shade_interior(const DrawItem& item, const PictureView& view) {
   glEnable(GL_CULL_FACE);
   glCullFace(GL_FRONT);
   begin(interiors_, item, view, false).set("capped", view.capped && item.opaque() ? 1.f : 0.f);
+  const BehindSlivers behind;
   item.mesh().draw(visibility_.choose(item.mesh(), surface_of(item, view), item.model, eye_of(view),
                                       Sides::back, &cover_));
   end_cut();
@@ -359,17 +373,24 @@ void Passes::opaque(std::span<const DrawItem> items, const PictureView& view) {
 }
 
 void Passes::depth_only(const DrawItem& item, const PictureView& view, Sides sides) {
-  if (sides == Sides::back) {
-    glEnable(GL_CULL_FACE);
-    glCullFace(GL_FRONT);
+  if (item.role() == Role::face && sides == Sides::both) {
+    depth_only(item, view, Sides::front);
+    depth_only(item, view, Sides::back);
+    return;
+  }
+  if (sides == Sides::both) {
+    glDisable(GL_CULL_FACE);
   } else {
-    cull_by_closure(item);
+    glEnable(GL_CULL_FACE);
+    glCullFace(sides == Sides::back ? GL_FRONT : GL_BACK);
   }
   depth_.use();
   depth_.set("view_projection", view.view_projection);
   begin_cut(depth_, item, view);
   depth_.set("model", item.model);
   glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+  std::optional<BehindSlivers> behind;
+  if (sides == Sides::back) behind.emplace();
   item.mesh().draw(visibility_.choose(item.mesh(), surface_of(item, view), item.model, eye_of(view),
                                       sides, &cover_));
   end_cut();

@@ -347,6 +347,53 @@ TEST_F(Scene, AnOpenShellIsDrawnFromBothSides) {
   EXPECT_NEAR(pixel(front, 100, 100).r, pixel(back, 100, 100).r, 12);
 }
 
+TEST_F(Scene, SliversOfSkinThatTurnOverShowNoneOfItsInnerSide) {
+  TriMesh smooth = ball({0, 0, 0}, 40, 60);  // open behind
+  std::erase_if(smooth.triangles, [&](const Eigen::Vector3i& t) {
+    return smooth.vertices[static_cast<std::size_t>(t[0])].y() > 25;
+  });
+  // The first edge of every other triangle is split, and a sliver fills the slit.
+  TriMesh split = smooth, slivers;
+  split.triangles.clear();
+  std::vector<Eigen::Vector3f> moved;
+  for (const auto& v : smooth.vertices) moved.push_back(v.cast<float>());
+  for (std::size_t i = 0; i < smooth.triangles.size(); ++i) {
+    const Eigen::Vector3i& t = smooth.triangles[i];
+    if (i % 2 == 0) {
+      split.triangles.push_back(t);
+      continue;
+    }
+    const auto &a = smooth.vertices[t[0]], &b = smooth.vertices[t[1]], &c = smooth.vertices[t[2]];
+    const int middle = static_cast<int>(split.vertices.size());
+    split.vertices.push_back(0.5 * (a + b) + 1e-3 * (c - a));
+    moved.push_back((0.5 * (a + b) - 1e-3 * (c - a)).cast<float>());
+    split.triangles.insert(split.triangles.end(), {{t[0], middle, t[2]}, {middle, t[1], t[2]}});
+    slivers.triangles.push_back({t[0], t[1], middle});
+  }
+  TriMesh filled = split;
+  filled.triangles.insert(filled.triangles.end(), slivers.triangles.begin(),
+                          slivers.triangles.end());
+  ASSERT_GT(slivers.triangles.size(), 1000u);
+  const auto picture = [&](const TriMesh& mesh, int samples, double opacity) {
+    const std::vector<Part> parts = {make_part("face", Role::face, mesh)};
+    SceneRenderer renderer(parts);
+    FrameState frame;
+    frame.face = moved;
+    renderer.update(frame);
+    PictureSettings settings;
+    settings.width = settings.height = 600;
+    settings.samples = samples;
+    settings.skin_opacity = opacity;
+    return renderer.picture(front_camera(), settings);
+  };
+  for (const int samples : {1, 4})
+    for (const double opacity : {1.0, 0.4})
+      EXPECT_TRUE(test::alike(test::Picture(picture(filled, samples, opacity)),
+                              test::Picture(picture(split, samples, opacity)), 0,
+                              test::Region{150, 150, 300, 300}))
+          << samples << " samples, opacity " << opacity;
+}
+
 TEST_F(Scene, ContactsAreMarkedInVermilionAndCanBeSwitchedOff) {
   const std::vector<Part> parts = {make_part("skull", Role::skull, ball({0, 0, 0}, 30))};
   SceneRenderer renderer(parts);
