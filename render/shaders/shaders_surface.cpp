@@ -386,6 +386,13 @@ void main() {
   vec3 c = mix(vec3(0.060, 0.014, 0.012), vec3(0.235, 0.062, 0.055), depth * depth)
          * (lit * (0.45 + 0.55 * nv));
   c += depth * 0.02 * key_color * specular(n, v, key_direction, 0.3);
+  // A triangle that a fold turns over has the normals of the skin around it: it is drawn as skin. So
+  // are lips, which fold at the corners of an open mouth.
+  vec3 outward = dot(n, v) < 0.0 ? -n : n;
+  float turned = max(smoothstep(0.0, 0.2, -dot(n, v)), smoothstep(0.1, 0.4, traits.z));
+  vec3 light = 0.7 * key_color * wrapped(dot(outward, key_direction), 0.3)
+             + fill_color * wrapped(dot(outward, fill_direction), 0.3) + ambient_light(outward, v);
+  c = mix(c, albedo * light, turned);
   float a = seen_through ? 1.0 - pow(1.0 - opacity, 1.0 / max(nv, 0.35)) : 1.0;
   result = vec4(display(c), a);
 }
