@@ -106,6 +106,20 @@ struct Prepared {
   std::vector<Eigen::Vector3f> positions, normals;
 };
 
+/// Median luminance, linear, of sRGB colours.
+float median_light(std::span<const GpuMesh::Bytes> colors) {
+  std::vector<float> light;
+  light.reserve(colors.size());
+  for (const auto& c : colors)
+    light.push_back(Eigen::Vector3f(0.2126f, 0.7152f, 0.0722f)
+                        .dot(Eigen::Vector3f(c[0], c[1], c[2]).array().pow(2.2f).matrix()) /
+                    std::pow(255.f, 2.2f));
+  if (light.empty()) return 0;
+  const auto middle = light.begin() + static_cast<std::ptrdiff_t>(light.size() / 2);
+  std::nth_element(light.begin(), middle, light.end());
+  return *middle;
+}
+
 }  // namespace
 
 std::vector<Drawable> make_drawables(std::span<const Part* const> parts, const MouthLining* mouth) {
@@ -188,6 +202,8 @@ std::vector<Drawable> make_drawables(std::span<const Part* const> parts, const M
                          std::move(creases), std::move(colors), std::move(extras), std::move(edges),
                          std::move(coarse_edges)});
     drawables.back().own = std::move(own);
+    if (part.role == Role::face)
+      drawables.back().skin_light = median_light(drawables.back().colors);
     drawables.back().papillae = part.role == Role::tongue;
     drawables.back().uneven = std::move(uneven);
     if (part.role == Role::eyes)
@@ -225,6 +241,7 @@ std::vector<Drawable> drawables_like(std::span<const Drawable> others) {
     drawables.back().pad = other.pad;
     drawables.back().lips = other.lips;
     drawables.back().neck_cut = other.neck_cut;
+    drawables.back().skin_light = other.skin_light;
   }
   return drawables;
 }

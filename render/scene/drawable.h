@@ -50,6 +50,7 @@ struct Drawable {
   std::shared_ptr<const SubmentalPad> pad = {};
   Eigen::AlignedBox3f lips = {};       // about the mouth of a face, at rest; empty without one
   std::optional<float> neck_cut = {};  // height of a face's lower end, where it is closed, mm
+  float skin_light = 0;                // median linear luminance of the colours of a face
 
   const GpuMesh& shown() const { return mapped && finer ? *finer : mesh; }
   /// The same surface in smaller triangles, for maps.

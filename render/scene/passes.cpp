@@ -283,6 +283,7 @@ GlProgram& Passes::begin(Programs& programs, const DrawItem& item, const Picture
   program.set("mouth_middle", lips.isEmpty() ? Eigen::Vector3f::Zero().eval() : lips.center());
   program.set("mouth_half", lips.isEmpty() ? Eigen::Vector3f::Constant(nowhere_mm).eval()
                                            : (0.5f * lips.sizes()).eval());
+  program.set("skin_light", item.drawable->skin_light);
   program.set("open_mouth", view.sectioned ? 1.f : 1 - view.at_rest);
   if (vanishing) {
     constexpr float gone_mm = 12, over_mm = 38;  // above the cut

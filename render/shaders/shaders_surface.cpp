@@ -274,6 +274,7 @@ void main() {
 
 const char* const skin_source = R"(
 uniform sampler2D skin_table;   // diffuse light by cosine and curvature
+uniform float skin_light;  // median linear luminance of the skin's colours
 uniform float open_mouth;  // 0 at rest, 1 with the jaw far open
 
 // Offset of the position at rest from another one; stored positions are known up to the period.
@@ -343,6 +344,10 @@ void main() {
              + open * (fill_color * specular(shine_normal, v, fill_direction, wide)
                      + rim_color * specular(shine_normal, v, rim_direction, wide));
   shine *= mix(pore * pore, 1.0, gloss);
+  // What is much darker than the skin is hair, which has no film of sebum.
+  float hair = 1.0 - smoothstep(0.25, 0.6, dot(albedo, vec3(0.2126, 0.7152, 0.0722))
+                                       / max(skin_light, 1e-4));
+  shine *= 1.0 - 0.85 * hair * (1.0 - gloss);
   vec3 darker = mix(vec3(0.05, 0.10, 0.12), vec3(0.35, 0.60, 0.60), furrows);
   vec3 c = albedo * mix(vec3(1.0), vec3(pore), darker) * light
          + mix(0.028, 0.05, gloss) * shine;

@@ -394,6 +394,23 @@ TEST_F(Scene, SliversOfSkinThatTurnOverShowNoneOfItsInnerSide) {
           << samples << " samples, opacity " << opacity;
 }
 
+TEST_F(Scene, HairIsDullAndDarkSkinIsNot) {
+  const Eigen::Vector3f dark(0.30f, 0.22f, 0.17f), fair(0.85f, 0.66f, 0.56f);
+  PictureSettings settings;
+  settings.width = settings.height = 300;
+  const auto brightest = [&](const Eigen::Vector3f& right_half) {
+    TriMesh head = ball({0, 0, 0}, 40, 60);
+    for (const auto& v : head.vertices) head.colors.push_back(v.x() > -14 ? right_half : dark);
+    const std::vector<Part> parts = {make_part("face", Role::face, head)};
+    const Image image = SceneRenderer(parts).picture(front_camera(), settings);
+    int most = 0;
+    for (int y = 0; y < 300; ++y)  // of the dark part, off its blurred border
+      for (int x = 60; x < 100; ++x) most = std::max(most, pixel(image, x, y).r);
+    return most;
+  };
+  EXPECT_LT(brightest(fair), brightest(dark) - 20);
+}
+
 TEST_F(Scene, ContactsAreMarkedInVermilionAndCanBeSwitchedOff) {
   const std::vector<Part> parts = {make_part("skull", Role::skull, ball({0, 0, 0}, 30))};
   SceneRenderer renderer(parts);
