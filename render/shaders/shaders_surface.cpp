@@ -302,6 +302,9 @@ void main() {
   begin();
   vec3 v = normalize(to_eye);
   vec3 smooth_normal = normalize(world_normal);
+  // Where skin folds sharply, as at the corners of an open mouth, the normals of a visible triangle
+  // may face away.
+  smooth_normal = normalize(smooth_normal - 1.3 * min(dot(smooth_normal, v), 0.0) * v);
   float gloss = traits.z;
   // The lining of the lips was shaded while they were closed.
   float ao = max(traits.x, 0.42 * gloss * open_mouth);
@@ -345,7 +348,7 @@ void main() {
                      + rim_color * specular(shine_normal, v, rim_direction, wide));
   shine *= mix(pore * pore, 1.0, gloss);
   // What is much darker than the skin is hair, which has no film of sebum.
-  float hair = 1.0 - smoothstep(0.25, 0.6, dot(albedo, vec3(0.2126, 0.7152, 0.0722))
+  float hair = 1.0 - smoothstep(0.2, 0.5, dot(albedo, vec3(0.2126, 0.7152, 0.0722))
                                        / max(skin_light, 1e-4));
   shine *= 1.0 - 0.85 * hair * (1.0 - gloss);
   vec3 darker = mix(vec3(0.05, 0.10, 0.12), vec3(0.35, 0.60, 0.60), furrows);
