@@ -288,6 +288,8 @@ GlProgram& Passes::begin(Programs& programs, const DrawItem& item, const Picture
   if (vanishing) {
     constexpr float gone_mm = 12, over_mm = 38;  // above the cut
     program.set("neck_end", Eigen::Vector2f(*neck_cut + gone_mm, 1 / over_mm));
+    const Eigen::AlignedBox3f& head = item.drawable->box;
+    program.set("neck_sides", Eigen::Vector2f(head.center().x(), 0.3f * head.sizes().x()));
     Background::set_in(program, view.width, view.height, *view.backdrop);
   }
   program.set("mapped_up_to", view.mapped_up_to);

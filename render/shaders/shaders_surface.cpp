@@ -284,9 +284,11 @@ vec3 from_rest(vec3 other) {
 
 // Fraction of the skin that remains visible towards the cut of the neck.
 uniform vec2 neck_end;  // height at rest where it has vanished, mm; 1 / mm over which it does
+uniform vec2 neck_sides;  // x of its middle at rest and half of its width, mm: shoulders end higher
 float visible() {
-  return vanishing ? smoothstep(0.0, 1.0, from_rest(vec3(0.0, 0.0, neck_end.x)).z * neck_end.y)
-                   : 1.0;
+  if (!vanishing) return 1.0;
+  vec3 off = from_rest(vec3(neck_sides.x, 0.0, neck_end.x));
+  return smoothstep(0.0, 1.0, (off.z - 0.3 * max(abs(off.x) - neck_sides.y, 0.0)) * neck_end.y);
 }
 
 // On the red of the lips the cells of skin are long, from lip to lip: furrows.
