@@ -120,6 +120,11 @@ float median_light(std::span<const GpuMesh::Bytes> colors) {
   return *middle;
 }
 
+void add_traits_of_role(Drawable& made) {
+  if (made.part->role == Role::face) made.skin_light = median_light(made.colors);
+  made.papillae = made.part->role == Role::tongue;
+}
+
 }  // namespace
 
 std::vector<Drawable> make_drawables(std::span<const Part* const> parts, const MouthLining* mouth) {
@@ -202,9 +207,7 @@ std::vector<Drawable> make_drawables(std::span<const Part* const> parts, const M
                          std::move(creases), std::move(colors), std::move(extras), std::move(edges),
                          std::move(coarse_edges)});
     drawables.back().own = std::move(own);
-    if (part.role == Role::face)
-      drawables.back().skin_light = median_light(drawables.back().colors);
-    drawables.back().papillae = part.role == Role::tongue;
+    add_traits_of_role(drawables.back());
     drawables.back().uneven = std::move(uneven);
     if (part.role == Role::eyes)
       drawables.back().behind_lashes =
