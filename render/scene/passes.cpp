@@ -45,8 +45,8 @@ Viewpoint eye_of(const PictureView& view) {
   return {view.view_projection, view.eye.homogeneous(), view.width, view.height};
 }
 
-/// While it exists, surfaces are drawn farther away, the more so the more they slope. For the inner
-/// side of the skin: a sliver of a triangle that a movement turns over lies on its neighbours.
+/// While it exists, triangles are drawn slightly farther away. Used for the inner side of the skin:
+/// slivers that a movement turns over lie on their neighbours.
 struct BehindSlivers {
   BehindSlivers() {
     glEnable(GL_POLYGON_OFFSET_FILL);
@@ -287,9 +287,10 @@ GlProgram& Passes::begin(Programs& programs, const DrawItem& item, const Picture
   program.set("open_mouth", view.sectioned ? 1.f : 1 - view.at_rest);
   if (vanishing) {
     constexpr float gone_mm = 12, over_mm = 38;  // above the cut
+    constexpr float neck_half_mm = 55;
     program.set("neck_end", Eigen::Vector2f(*neck_cut + gone_mm, 1 / over_mm));
-    const Eigen::AlignedBox3f& head = item.drawable->box;
-    program.set("neck_sides", Eigen::Vector2f(head.center().x(), 0.3f * head.sizes().x()));
+    program.set("neck_sides",
+                Eigen::Vector2f(lips.isEmpty() ? 0 : lips.center().x(), neck_half_mm));
     Background::set_in(program, view.width, view.height, *view.backdrop);
   }
   program.set("mapped_up_to", view.mapped_up_to);

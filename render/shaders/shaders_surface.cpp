@@ -272,30 +272,31 @@ void main() {
 }
 )";
 
-const char* const skin_source = R"(
-uniform sampler2D skin_table;   // diffuse light by cosine and curvature
-uniform float skin_light;  // median linear luminance of the skin's colours
-uniform float open_mouth;  // 0 at rest, 1 with the jaw far open
-
+const char* const mouth_source = R"(
 // Offset of the position at rest from another one; stored positions are known up to the period.
 vec3 from_rest(vec3 other) {
   return mod(rest_place - other + 0.5 * rest_period, rest_period) - 0.5 * rest_period;
 }
 
-// Fraction of the skin that remains visible towards the cut of the neck.
-uniform vec2 neck_end;  // height at rest where it has vanished, mm; 1 / mm over which it does
-uniform vec2 neck_sides;  // x of its middle at rest and half of its width, mm: shoulders end higher
-float visible() {
-  if (!vanishing) return 1.0;
-  vec3 off = from_rest(vec3(neck_sides.x, 0.0, neck_end.x));
-  return smoothstep(0.0, 1.0, (off.z - 0.3 * max(abs(off.x) - neck_sides.y, 0.0)) * neck_end.y);
-}
-
-// On the red of the lips the cells of skin are long, from lip to lip: furrows.
 uniform vec3 mouth_middle, mouth_half;  // box about the lips at rest, mm
 bool beside_mouth() {
   vec3 off = from_rest(mouth_middle) / mouth_half;
   return dot(off, off) < 1.0;
+}
+)";
+
+const char* const skin_source = R"(
+uniform sampler2D skin_table;   // diffuse light by cosine and curvature
+uniform float skin_light;  // median linear luminance of the skin's colours
+uniform float open_mouth;  // 0 at rest, 1 with the jaw far open
+
+// Fraction of the skin that remains visible towards the cut of the neck.
+uniform vec2 neck_end;  // height at rest where it has vanished, mm; 1 / mm over which it does
+uniform vec2 neck_sides;  // x of its middle at rest, and half its width, mm; beyond it fades higher up
+float visible() {
+  if (!vanishing) return 1.0;
+  vec3 off = from_rest(vec3(neck_sides.x, 0.0, neck_end.x));
+  return smoothstep(0.0, 1.0, (off.z - 0.3 * max(abs(off.x) - neck_sides.y, 0.0)) * neck_end.y);
 }
 
 uniform float relief;  // 0 to 1: of pores, furrows and shadows, on skin that is seen through
@@ -314,6 +315,7 @@ void main() {
   // affect the specular more than the diffuse part.
   float pixel_mm = pixel_on(smooth_normal, v);
   bool furrowed = gloss > 0.15 && beside_mouth();
+  // On the red of the lips the cells of skin are long, from lip to lip: furrows.
   float furrows = furrowed ? smoothstep(0.15, 0.4, gloss) : 0.0;
   vec3 cells = furrowed ? lip_cells : vec3(1.0);
   vec4 coarse = smooth_skin ? vec4(0.0) : detail(rest_place.zxy, coarse_period, pixel_mm);
@@ -349,10 +351,10 @@ void main() {
              + open * (fill_color * specular(shine_normal, v, fill_direction, wide)
                      + rim_color * specular(shine_normal, v, rim_direction, wide));
   shine *= mix(pore * pore, 1.0, gloss);
-  // What is much darker than the skin is hair, which has no film of sebum.
+  // What is much darker than the skin is taken for hair, which has no broad highlight.
   float hair = 1.0 - smoothstep(0.2, 0.5, dot(albedo, vec3(0.2126, 0.7152, 0.0722))
                                        / max(skin_light, 1e-4));
-  shine *= 1.0 - 0.85 * hair * (1.0 - gloss);
+  shine *= 1.0 - 0.85 * hair * (1.0 - furrows);
   vec3 darker = mix(vec3(0.05, 0.10, 0.12), vec3(0.35, 0.60, 0.60), furrows);
   vec3 c = albedo * mix(vec3(1.0), vec3(pore), darker) * light
          + mix(0.028, 0.05, gloss) * shine;
@@ -396,12 +398,15 @@ void main() {
   vec3 c = mix(vec3(0.060, 0.014, 0.012), vec3(0.235, 0.062, 0.055), depth * depth)
          * (lit * (0.45 + 0.55 * nv));
   c += depth * 0.02 * key_color * specular(n, v, key_direction, 0.3);
-  // A triangle that a fold turns over has the normals of the skin around it: it is drawn as skin. So
-  // are lips, which fold at the corners of an open mouth.
-  vec3 outward = dot(n, v) < 0.0 ? -n : n;
-  float turned = max(smoothstep(0.0, 0.2, -dot(n, v)), smoothstep(0.1, 0.4, traits.z));
-  vec3 light = 0.7 * key_color * wrapped(dot(outward, key_direction), 0.3)
-             + fill_color * wrapped(dot(outward, fill_direction), 0.3) + ambient_light(outward, v);
+  // A triangle that a fold turns over has the normals of the surrounding skin and is shaded like it.
+  // The same holds for lips, which fold at the corners of an open mouth.
+  float lip = beside_mouth() ? smoothstep(0.15, 0.4, traits.z) : 0.0;
+  float turned = mapped ? 0.0 : max(smoothstep(0.0, 0.2, -dot(n, v)), lip);
+  vec3 facing = n - 2.0 * min(dot(n, v), 0.0) * v;
+  float ao = mix(traits.x, 1.0, lip);  // closed lips shade one another, open ones do not
+  vec3 light = 0.7 * key_color * wrapped(dot(facing, key_direction), 0.3) * mix(0.5, 1.0, ao)
+             + (fill_color * wrapped(dot(facing, fill_direction), 0.3) + ambient_light(facing, v))
+               * colored_occlusion(ao, albedo);
   c = mix(c, albedo * light, turned);
   float a = seen_through ? 1.0 - pow(1.0 - opacity, 1.0 / max(nv, 0.35)) : 1.0;
   result = vec4(display(c), a);
@@ -468,8 +473,10 @@ ShaderSource tint_shaders() { return lit({}, tint_source); }
 ShaderSource fibre_shaders() { return lit({}, fibre_source); }
 ShaderSource surface_shaders(const Shading& shading) { return lit(shading, surface_source); }
 ShaderSource skin_shaders(const Shading& shading) {
-  return lit(shading, (std::string(backdrop_source) + skin_source).c_str());
+  return lit(shading, (std::string(backdrop_source) + mouth_source + skin_source).c_str());
 }
-ShaderSource interior_shaders(const Shading& shading) { return lit(shading, interior_source); }
+ShaderSource interior_shaders(const Shading& shading) {
+  return lit(shading, (std::string(mouth_source) + interior_source).c_str());
+}
 
 }  // namespace condyle

@@ -93,11 +93,12 @@ TEST_F(WindowSession, OpenPlayScrubDragSlideUndoMeasureRecordQuit) {
   click("record-folder");
   ASSERT_TRUE(wait_for_item("writing"));
   EXPECT_TRUE(press("ctrl+a"));
+  ASSERT_TRUE(wait_for_item("record-where"));
   const auto button = rect("record");
   EXPECT_TRUE(xdotool({"type", folder_ / "film"}));
   EXPECT_TRUE(press("Return"));
   ASSERT_TRUE(wait_for_item("record-where", false));
-  EXPECT_EQ(rect("record"), button) << "the button moved while the folder was typed";
+  EXPECT_EQ(rect("record"), button) << "the button moved when another folder was typed";
   click("record");
   EXPECT_TRUE(wait_until([](const Json& s) { return s["busy_with"] == "recording"; }));
   EXPECT_TRUE(press("l"));
