@@ -289,8 +289,7 @@ GlProgram& Passes::begin(Programs& programs, const DrawItem& item, const Picture
     constexpr float gone_mm = 12, over_mm = 38;  // above the cut
     constexpr float neck_half_mm = 55;
     program.set("neck_end", Eigen::Vector2f(*neck_cut + gone_mm, 1 / over_mm));
-    program.set("neck_sides",
-                Eigen::Vector2f(lips.isEmpty() ? 0 : lips.center().x(), neck_half_mm));
+    program.set("neck_sides", Eigen::Vector2f(lips.center().x(), neck_half_mm));
     Background::set_in(program, view.width, view.height, *view.backdrop);
   }
   program.set("mapped_up_to", view.mapped_up_to);
@@ -377,7 +376,7 @@ void Passes::opaque(std::span<const DrawItem> items, const PictureView& view) {
 }
 
 void Passes::depth_only(const DrawItem& item, const PictureView& view, Sides sides) {
-  if (item.role() == Role::face && sides == Sides::both) {
+  if (item.role() == Role::face && sides == Sides::both) {  // its inner side has another depth
     depth_only(item, view, Sides::front);
     depth_only(item, view, Sides::back);
     return;

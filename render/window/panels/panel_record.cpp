@@ -230,11 +230,12 @@ void Panels::Drawing::record_folder() {
     tooltip(pen, "Choose a folder in the file dialog of the desktop");
   }
   if (input.recording_folder_name.empty()) return;
-  const bool own = std::filesystem::path(fields.folder).parent_path() != input.recording_folder;
+  const bool elsewhere =
+      std::filesystem::path(fields.folder).parent_path() != input.recording_folder;
   record_label("");
-  const std::string where = own ? " " : "in " + input.recording_folder_name;
+  const std::string where = elsewhere ? " " : "in " + input.recording_folder_name;
   text(pen.theme.small, palette().text_dim, where);  // the line stays: what is below never moves
-  if (own) return;
+  if (elsewhere) return;
   pen.mark("record-where", where);
   tooltip(
       pen,
