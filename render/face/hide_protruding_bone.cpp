@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 
 #include "engine/core/archive.h"
 #include "engine/core/user_cache.h"
@@ -18,39 +19,58 @@ std::uint64_t hash_of(const TriMesh& mesh, std::uint64_t h) {
   return word_hash(mesh.triangles.data(), sizes[1] * sizeof mesh.triangles[0], h);
 }
 
-std::vector<Eigen::Vector3i> triangles_beneath(const TriMesh& bone, const TriMesh& skin) {
-  constexpr double max_mm = 3;
+constexpr double protrudes_mm = 3, thin_mm = 5;
+constexpr double opening_mm = 25;  // from a rim of the skin: bone may show through the opening
+constexpr double lengths[] = {protrudes_mm, thin_mm, opening_mm};
+
+using Kept = std::optional<std::vector<Eigen::Vector3i>>;
+
+Kept triangles_beneath(const TriMesh& bone, const TriMesh& skin, bool in_place) {
   const TriangleTree tree(skin);
   std::vector<char> rim(skin.vertices.size(), 0), out(bone.vertices.size(), 0);
+  std::vector<Eigen::Vector3d> rims;
   for (const auto& walk : rims_of(skin))
-    for (const int v : walk) rim[static_cast<std::size_t>(v)] = 1;
+    for (const int v : walk) {
+      rim[static_cast<std::size_t>(v)] = 1;
+      rims.push_back(skin.vertices[static_cast<std::size_t>(v)]);
+    }
+  const auto far_from_rims = [&](const Eigen::Vector3d& p) {
+    return std::none_of(rims.begin(), rims.end(), [&](const Eigen::Vector3d& r) {
+      return (p - r).squaredNorm() < opening_mm * opening_mm;
+    });
+  };
   for (std::size_t v = 0; v < out.size(); ++v) {
-    const auto near = tree.signed_nearest(bone.vertices[v], max_mm);
-    if (near.triangle < 0 || near.distance <= 0) continue;
+    const auto near = tree.signed_nearest(bone.vertices[v], thin_mm);
+    if (near.triangle < 0 || near.distance > protrudes_mm) continue;
     const auto& corners = skin.triangles[static_cast<std::size_t>(near.triangle)];
-    out[v] = std::none_of(corners.begin(), corners.end(),
-                          [&](int c) { return rim[static_cast<std::size_t>(c)]; });
+    out[v] = near.distance > 0
+                 ? std::none_of(corners.begin(), corners.end(),
+                                [&](int c) { return rim[static_cast<std::size_t>(c)]; })
+                 : in_place && far_from_rims(bone.vertices[v]);
   }
   std::vector<Eigen::Vector3i> kept;
   for (const auto& t : bone.triangles)
     if (std::none_of(t.begin(), t.end(), [&](int v) { return out[static_cast<std::size_t>(v)]; }))
       kept.push_back(t);
-  if (kept.size() == bone.triangles.size()) kept.clear();
+  if (kept.size() == bone.triangles.size()) return std::nullopt;
   return kept;
 }
 
 }  // namespace
 
-std::vector<Eigen::Vector3i> hide_protruding_bone(const TriMesh& bone, const TriMesh& skin) {
-  const ResultCache results(user_cache_folder(), "beneath-skin");
-  const std::uint64_t inputs = hash_of(skin, hash_of(bone, hash_start));
-  std::vector<Eigen::Vector3i> kept;
+std::optional<std::vector<Eigen::Vector3i>> hide_protruding_bone(const TriMesh& bone,
+                                                                 const TriMesh& skin,
+                                                                 bool in_place) {
+  const ResultCache results(user_cache_folder(), "bone-beneath-skin");
+  const std::uint64_t rules = word_hash(lengths, in_place ? sizeof lengths : 0, hash_start);
+  const std::uint64_t inputs = hash_of(skin, hash_of(bone, rules));
+  Kept kept;
   if (const auto bytes = results.read(inputs)) {
     ArchiveReader reader(*bytes);
     reader(kept);
     if (reader.complete()) return kept;
   }
-  kept = triangles_beneath(bone, skin);
+  kept = triangles_beneath(bone, skin, in_place);
   ArchiveWriter writer;
   writer(kept);
   results.write(inputs, writer.take());

@@ -68,9 +68,9 @@ struct SceneRenderer::State {
     long sent = 0;  // shape of the lashes
   };
   std::map<std::size_t, PartedEyes> parted_eyes;
-  // For cranial drawables by number, once the skin was opaque: without slight protrusions from it;
-  // none where nothing protrudes.
-  std::map<std::size_t, std::optional<Drawable>> beneath;
+  // For cranial drawables by number and whether they are in place, once the skin was opaque:
+  // see hide_protruding_bone; none where nothing is left out.
+  std::map<std::pair<std::size_t, bool>, std::optional<Drawable>> beneath;
   std::optional<MouthCavity> mouth;               // from the first picture of an opaque face on
   std::optional<SectionAnatomy> section_anatomy;  // from the first section on
   TongueShape tongue_shape;
@@ -156,10 +156,12 @@ void SceneRenderer::State::keep_beneath_skin(std::vector<DrawItem>& items) {
     const bool bone = item.role() == Role::skull || item.role() == Role::maxilla;
     if (!bone || item.drawable->mapped || !item.opaque() || item.cut()) continue;
     const auto number = static_cast<std::size_t>(item.drawable - drawables.data());
-    auto [found, fresh] = beneath.try_emplace(number);
+    const bool in_place = item.role() == Role::skull && item.model.isIdentity(0);
+    auto [found, fresh] = beneath.try_emplace({number, in_place});
     if (fresh) {
-      const auto kept = hide_protruding_bone(item.drawable->part->mesh, face->drawable->part->mesh);
-      if (!kept.empty()) found->second.emplace(piece_of(*item.drawable, kept));
+      const auto kept =
+          hide_protruding_bone(item.drawable->part->mesh, face->drawable->part->mesh, in_place);
+      if (kept) found->second.emplace(piece_of(*item.drawable, *kept));
     }
     if (found->second) item.drawable = &*found->second;
   }
