@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <iterator>
 #include <optional>
 
 #include "engine/core/archive.h"
@@ -26,27 +27,25 @@ constexpr double lengths[] = {protrudes_mm, thin_mm, opening_mm};
 using Kept = std::optional<std::vector<Eigen::Vector3i>>;
 
 Kept triangles_beneath(const TriMesh& bone, const TriMesh& skin, bool in_place) {
-  const TriangleTree tree(skin);
   std::vector<char> rim(skin.vertices.size(), 0), out(bone.vertices.size(), 0);
-  std::vector<Eigen::Vector3d> rims;
   for (const auto& walk : rims_of(skin))
-    for (const int v : walk) {
-      rim[static_cast<std::size_t>(v)] = 1;
-      rims.push_back(skin.vertices[static_cast<std::size_t>(v)]);
-    }
-  const auto far_from_rims = [&](const Eigen::Vector3d& p) {
-    return std::none_of(rims.begin(), rims.end(), [&](const Eigen::Vector3d& r) {
-      return (p - r).squaredNorm() < opening_mm * opening_mm;
-    });
+    for (const int v : walk) rim[static_cast<std::size_t>(v)] = 1;
+  const auto meets_rim = [&](const Eigen::Vector3i& t) {
+    return std::any_of(t.begin(), t.end(), [&](int v) { return rim[static_cast<std::size_t>(v)]; });
   };
+  TriMesh border;
+  border.vertices = skin.vertices;
+  std::copy_if(skin.triangles.begin(), skin.triangles.end(), std::back_inserter(border.triangles),
+               meets_rim);
+  const TriangleTree tree(skin), border_tree(border);
   for (std::size_t v = 0; v < out.size(); ++v) {
-    const auto near = tree.signed_nearest(bone.vertices[v], thin_mm);
+    const Eigen::Vector3d& p = bone.vertices[v];
+    const auto near = tree.signed_nearest(p, thin_mm);
     if (near.triangle < 0 || near.distance > protrudes_mm) continue;
-    const auto& corners = skin.triangles[static_cast<std::size_t>(near.triangle)];
-    out[v] = near.distance > 0
-                 ? std::none_of(corners.begin(), corners.end(),
-                                [&](int c) { return rim[static_cast<std::size_t>(c)]; })
-                 : in_place && far_from_rims(bone.vertices[v]);
+    if (near.distance > 0)
+      out[v] = !meets_rim(skin.triangles[static_cast<std::size_t>(near.triangle)]);
+    else
+      out[v] = in_place && border_tree.nearest(p, opening_mm).triangle < 0;
   }
   std::vector<Eigen::Vector3i> kept;
   for (const auto& t : bone.triangles)
@@ -61,7 +60,7 @@ Kept triangles_beneath(const TriMesh& bone, const TriMesh& skin, bool in_place) 
 std::optional<std::vector<Eigen::Vector3i>> hide_protruding_bone(const TriMesh& bone,
                                                                  const TriMesh& skin,
                                                                  bool in_place) {
-  const ResultCache results(user_cache_folder(), "bone-beneath-skin");
+  const ResultCache results(user_cache_folder(), "bone-below-skin");
   const std::uint64_t rules = word_hash(lengths, in_place ? sizeof lengths : 0, hash_start);
   const std::uint64_t inputs = hash_of(skin, hash_of(bone, rules));
   Kept kept;

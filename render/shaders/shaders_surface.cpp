@@ -351,13 +351,21 @@ void main() {
              + open * (fill_color * specular(shine_normal, v, fill_direction, wide)
                      + rim_color * specular(shine_normal, v, rim_direction, wide));
   shine *= mix(pore * pore, 1.0, gloss);
-  // What is much darker than the skin is taken for hair, which has no broad highlight.
-  float hair = 1.0 - smoothstep(0.2, 0.5, dot(albedo, vec3(0.2126, 0.7152, 0.0722))
-                                       / max(skin_light, 1e-4));
-  shine *= 1.0 - 0.85 * hair * (1.0 - furrows);
+  float bright = dot(albedo, vec3(0.2126, 0.7152, 0.0722)) / max(skin_light, 1e-4);
+  // What is much darker than the skin is taken for hair, which has no broad highlight; what is
+  // darker and greyer, for skin with hair cut short.
+  float hair = 1.0 - smoothstep(0.2, 0.5, bright);
+  float grey = 1.0 - smoothstep(1.7, 2.4, albedo.r / max(albedo.b, 1e-4));
+  float stubble = grey * (1.0 - smoothstep(0.6, 1.0, bright));
+  shine *= (1.0 - 0.85 * hair * (1.0 - furrows)) * (1.0 - 0.6 * stubble);
   vec3 darker = mix(vec3(0.05, 0.10, 0.12), vec3(0.35, 0.60, 0.60), furrows);
-  vec3 c = albedo * mix(vec3(1.0), vec3(pore), darker) * light
-         + mix(0.028, 0.05, gloss) * shine;
+  vec3 tone = mix(vec3(1.0), vec3(pore), darker);
+  for (int i = 0; i < (stubble > 0.02 && !smooth_skin ? 1 : 0); ++i) {
+    float stubs = detail(2.0 * rest_place.yzx, fine_period, 2.0 * pixel_mm).a;
+    tone = mix(tone, vec3(clamp(1.0 + 3.2 * stubs + fine.a + 0.35 * coarse.a, 0.3, 1.5)),
+               stubble);
+  }
+  vec3 c = albedo * tone * light + mix(0.028, 0.05, gloss) * shine;
   c += 0.5 * ambient_light(reflect(-v, n), v) * fresnel(nv, 0.028) * (1.0 - wide) * open;
   vec3 shown = display(c);
   float a = opacity;

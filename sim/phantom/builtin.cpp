@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int surface_version = 15;  // increment when surfaces, their colours or landmarks change
+constexpr int surface_version = 16;  // increment when surfaces, their colours or landmarks change
                                      // without a change of the solids
 
 /// Hash of the recipes' values at scattered points, so that a changed recipe changes the key.

@@ -94,7 +94,7 @@ Eigen::Vector3f skin_color(const Vector3d& at) {
   const double hair = smooth_step(above_line / 44 + .4) * (.8 + .2 * smooth_step(above_line / 70));
   const double ear =
       smooth_step((x - 64) / 8) * smooth_step((1.3 - std::hypot((y - 13) / 25, z / 38)) / .35);
-  mix({.44, .40, .385}, hair * (1 - ear) * (.62 + .03 * mottle(at, 9) + .05 * mottle(at, 2.6)));
+  mix({.33, .30, .285}, hair * (1 - ear) * (.62 + .03 * mottle(at, 9) + .05 * mottle(at, 2.6)));
   // The cut through the neck, and a dark border above it.
   mix({.13, .11, .11}, smooth_step((-168 - z) / 20));
   return color.cast<float>();

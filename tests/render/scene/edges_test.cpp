@@ -97,15 +97,15 @@ TEST_F(Edges, OfShadowsHaveNoGrain) {
 }
 
 TEST_F(Edges, OfShadowsAreNotThrownOnLipsByWhatLiesOnThem) {
-  // A strip of bone before a wall of skin, as far off as lips that have opened are from what throws
-  // their shadow.
+  // A strip of a lower jaw before a wall of skin, as far off as lips that have opened are from what
+  // throws their shadow.
   const auto shaded = [](const Eigen::Vector3f& color, double before_mm) {
     TriMesh wall = quad({-40, 0, -40}, {40, 0, -40}, {40, 0, 40}, {-40, 0, 40});
     wall.colors.assign(wall.vertices.size(), color);
     const double y = -before_mm;
     const std::vector<Part> parts = {
         make_part("face", Role::face, wall),
-        make_part("strip", Role::skull, quad({-30, y, 0}, {30, y, 0}, {30, y, 6}, {-30, y, 6}))};
+        make_part("strip", Role::mandible, quad({-30, y, 0}, {30, y, 0}, {30, y, 6}, {-30, y, 6}))};
     SceneRenderer renderer(parts);
     auto settings = mask_settings(200);
     const Image lit = renderer.picture(front_camera(), settings);

@@ -412,6 +412,26 @@ TEST_F(Scene, HairIsDullAndDarkSkinIsNot) {
     EXPECT_LT(brightest(dark, fair), brightest(dark, dark) - 20) << dark.transpose();
 }
 
+TEST_F(Scene, HairCutShortHasAGrainAndGreySkinHasNone) {
+  PictureSettings settings;
+  settings.width = settings.height = 600;
+  const auto grain = [&](const Eigen::Vector3f& colour, const Eigen::Vector3f& elsewhere) {
+    TriMesh head = ball({0, 0, 0}, 40, 60);
+    for (const auto& v : head.vertices) head.colors.push_back(v.x() > -5 ? elsewhere : colour);
+    const std::vector<Part> parts = {make_part("face", Role::face, head)};
+    const Image image = SceneRenderer(parts).picture(front_camera(), settings);
+    int sum = 0;
+    for (int y = 250; y < 350; ++y)
+      for (int x = 170; x < 230; ++x)
+        sum += std::abs(pixel(image, x, y).g - pixel(image, x + 1, y).g);
+    return sum;
+  };
+  const Eigen::Vector3f fair(0.80f, 0.62f, 0.53f), shaven(0.51f, 0.42f, 0.38f);
+  const Eigen::Vector3f brown(0.51f, 0.36f, 0.28f);
+  EXPECT_GT(grain(shaven, fair), 1.5 * grain(shaven, shaven));
+  EXPECT_LT(grain(brown, fair), 1.2 * grain(brown, brown));
+}
+
 TEST_F(Scene, ContactsAreMarkedInVermilionAndCanBeSwitchedOff) {
   const std::vector<Part> parts = {make_part("skull", Role::skull, ball({0, 0, 0}, 30))};
   SceneRenderer renderer(parts);
