@@ -3,6 +3,7 @@
 #include "engine/collide/box_tree.h"
 #include "engine/core/archive.h"
 #include "engine/core/user_cache.h"
+#include "engine/mesh/shape_key.h"
 
 namespace condyle {
 
@@ -16,9 +17,7 @@ BoxTree BoxTree::stored(const TriMesh& mesh, const std::filesystem::path& cache)
   const std::size_t count = mesh.triangles.size();
   if (cache.empty() || count < few) return BoxTree(mesh);
   const ResultCache results(cache, "boxes");
-  std::uint64_t inputs = word_hash(&count, sizeof count);
-  inputs = word_hash(mesh.vertices.data(), mesh.vertices.size() * sizeof mesh.vertices[0], inputs);
-  inputs = word_hash(mesh.triangles.data(), count * sizeof mesh.triangles[0], inputs);
+  const std::uint64_t inputs = shape_key(mesh);
   if (const auto bytes = results.read(inputs)) {
     BoxTree tree;
     ArchiveReader reader(*bytes);

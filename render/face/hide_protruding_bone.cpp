@@ -8,17 +8,11 @@
 #include "engine/core/archive.h"
 #include "engine/core/user_cache.h"
 #include "engine/mesh/rims.h"
+#include "engine/mesh/shape_key.h"
 #include "engine/mesh/triangle_tree.h"
 
 namespace condyle {
 namespace {
-
-std::uint64_t hash_of(const TriMesh& mesh, std::uint64_t h) {
-  const std::size_t sizes[] = {mesh.vertices.size(), mesh.triangles.size()};
-  h = word_hash(sizes, sizeof sizes, h);
-  h = word_hash(mesh.vertices.data(), sizes[0] * sizeof mesh.vertices[0], h);
-  return word_hash(mesh.triangles.data(), sizes[1] * sizeof mesh.triangles[0], h);
-}
 
 constexpr double protrudes_mm = 3, thin_mm = 5;
 constexpr double opening_mm = 25;  // from a rim of the skin: bone may show through the opening
@@ -62,7 +56,7 @@ std::optional<std::vector<Eigen::Vector3i>> hide_protruding_bone(const TriMesh& 
                                                                  bool in_place) {
   const ResultCache results(user_cache_folder(), "bone-below-skin");
   const std::uint64_t rules = word_hash(lengths, in_place ? sizeof lengths : 0, hash_start);
-  const std::uint64_t inputs = hash_of(skin, hash_of(bone, rules));
+  const std::uint64_t inputs = shape_key(skin, shape_key(bone, rules));
   Kept kept;
   if (const auto bytes = results.read(inputs)) {
     ArchiveReader reader(*bytes);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "engine/core/user_cache.h"
+#include "engine/mesh/shape_key.h"
 
 namespace condyle {
 namespace {
@@ -35,13 +36,6 @@ void append_near(const TriMesh& mesh, const Eigen::Vector3d& center, double radi
   }
 }
 
-std::uint64_t hash_of(const TriMesh& mesh, std::uint64_t h) {
-  const std::size_t sizes[] = {mesh.vertices.size(), mesh.triangles.size()};
-  h = word_hash(sizes, sizeof sizes, h);
-  h = word_hash(mesh.vertices.data(), sizes[0] * sizeof mesh.vertices[0], h);
-  return word_hash(mesh.triangles.data(), sizes[1] * sizeof mesh.triangles[0], h);
-}
-
 }  // namespace
 
 std::filesystem::path box_tree_folder(const Case& patient) {
@@ -65,7 +59,7 @@ std::optional<JointSurfaces> JointSurfaces::find(const Case& patient) {
     if (condyle.empty() || fossa.empty()) return std::nullopt;
     const auto cache = box_tree_folder(patient);
     Side side{CollisionMesh(condyle, cache), CollisionMesh(fossa, cache), 0, 0, {}};
-    side.hash = hash_of(fossa, hash_of(condyle, hash_start));
+    side.hash = shape_key(fossa, shape_key(condyle));
     const MeshDistance rest = distance(side.fossa, {}, side.condyle, {});
     if (rest.distance_mm < min_gap_mm || rest.distance_mm > largest_gap_mm) return std::nullopt;
     side.rest_gap_mm = rest.distance_mm;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "engine/mesh/measure.h"
+#include "engine/mesh/shape_key.h"
 #include "engine/mesh/simplify.h"
 #include "engine/mesh/topology.h"
 #include "engine/mesh/triangle_tree.h"
@@ -46,6 +47,19 @@ TEST(Measure, HashChangesWithAnyBit) {
   EXPECT_EQ(before, mesh_hash(sphere(2, 10)));
   mesh.vertices[7].y() = std::nextafter(mesh.vertices[7].y(), 1e9);
   EXPECT_NE(before, mesh_hash(mesh));
+}
+
+TEST(ShapeKey, DependsOnVerticesAndTrianglesAlone) {
+  const TriMesh mesh = sphere(2, 10);
+  TriMesh other = mesh;
+  other.colors.assign(mesh.vertices.size(), {1, 0, 0});
+  EXPECT_EQ(shape_key(other), shape_key(mesh));
+  EXPECT_NE(shape_key(mesh, shape_key(mesh)), shape_key(mesh)) << "chained";
+  other.vertices[7].y() = std::nextafter(other.vertices[7].y(), 1e9);
+  EXPECT_NE(shape_key(other), shape_key(mesh));
+  other = mesh;
+  std::swap(other.triangles[3], other.triangles[4]);
+  EXPECT_NE(shape_key(other), shape_key(mesh));
 }
 
 TEST(Weld, RestoresAMeshThatWasTakenApart) {
