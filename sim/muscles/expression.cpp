@@ -34,7 +34,7 @@ ExpressionLevel parse_level(std::string_view text, const std::string& option) {
     throw InputError(option + ": there is no such expression as \"" + shortened(name) +
                      "\"; valid ones are " + list_expressions() + ", or a CSV file (*.csv)");
   double strength = 1;
-  if (fields.size() > 1) strength = parse_number(std::string(fields[1]), "--expression");
+  if (fields.size() > 1) strength = parse_number(std::string(fields[1]), option);
   if (!(strength >= 0 && strength <= 1))
     throw InputError(fmt::format("{}: the strength must be 0 to 1, not {}", option, strength));
   const std::string_view side = fields.size() > 2 ? fields[2] : std::string_view();

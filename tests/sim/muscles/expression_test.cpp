@@ -92,6 +92,7 @@ TEST(Expression, ActionUnits43And45CloseTheLidsOfTheirSides) {
   EXPECT_EQ(both.at(1).muscles[0], 1);
   EXPECT_FALSE(make_expression("smile", pair_of_muscles()).at(1).lids.any());
   EXPECT_NE(refusal("AU45:1.2").find("0 to 1, not 1.2"), std::string::npos);
+  EXPECT_EQ(refusal("AU45:half"), "--expression AU45:half: \"half\" is no number");
 }
 
 TEST(Expression, LeavesAMuscleOfTheLidsThatTheCaseBringsRelaxed) {
