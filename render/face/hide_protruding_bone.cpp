@@ -20,8 +20,8 @@ constexpr double lengths[] = {protrudes_mm, thin_mm, opening_mm};
 
 using Kept = std::optional<std::vector<Eigen::Vector3i>>;
 
-Kept triangles_beneath(const TriMesh& bone, const TriMesh& skin, bool in_place) {
-  std::vector<char> rim(skin.vertices.size(), 0), out(bone.vertices.size(), 0);
+Kept kept_triangles(const TriMesh& bone, const TriMesh& skin, bool in_place) {
+  std::vector<char> rim(skin.vertices.size(), 0), hidden(bone.vertices.size(), 0);
   for (const auto& walk : rims_of(skin))
     for (const int v : walk) rim[static_cast<std::size_t>(v)] = 1;
   const auto meets_rim = [&](const Eigen::Vector3i& t) {
@@ -32,18 +32,19 @@ Kept triangles_beneath(const TriMesh& bone, const TriMesh& skin, bool in_place) 
   std::copy_if(skin.triangles.begin(), skin.triangles.end(), std::back_inserter(border.triangles),
                meets_rim);
   const TriangleTree tree(skin), border_tree(border);
-  for (std::size_t v = 0; v < out.size(); ++v) {
+  for (std::size_t v = 0; v < hidden.size(); ++v) {
     const Eigen::Vector3d& p = bone.vertices[v];
     const auto near = tree.signed_nearest(p, thin_mm);
     if (near.triangle < 0 || near.distance > protrudes_mm) continue;
     if (near.distance > 0)
-      out[v] = !meets_rim(skin.triangles[static_cast<std::size_t>(near.triangle)]);
+      hidden[v] = !meets_rim(skin.triangles[static_cast<std::size_t>(near.triangle)]);
     else
-      out[v] = in_place && border_tree.nearest(p, opening_mm).triangle < 0;
+      hidden[v] = in_place && border_tree.nearest(p, opening_mm).triangle < 0;
   }
   std::vector<Eigen::Vector3i> kept;
   for (const auto& t : bone.triangles)
-    if (std::none_of(t.begin(), t.end(), [&](int v) { return out[static_cast<std::size_t>(v)]; }))
+    if (std::none_of(t.begin(), t.end(),
+                     [&](int v) { return hidden[static_cast<std::size_t>(v)]; }))
       kept.push_back(t);
   if (kept.size() == bone.triangles.size()) return std::nullopt;
   return kept;
@@ -63,7 +64,7 @@ std::optional<std::vector<Eigen::Vector3i>> hide_protruding_bone(const TriMesh& 
     reader(kept);
     if (reader.complete()) return kept;
   }
-  kept = triangles_beneath(bone, skin, in_place);
+  kept = kept_triangles(bone, skin, in_place);
   ArchiveWriter writer;
   writer(kept);
   results.write(inputs, writer.take());

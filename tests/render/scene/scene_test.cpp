@@ -394,15 +394,21 @@ TEST_F(Scene, SliversOfSkinThatTurnOverShowNoneOfItsInnerSide) {
           << samples << " samples, opacity " << opacity;
 }
 
+/// A ball of skin of one colour up to `border_x`, of another beyond it, from the front.
+Image skin_of_two_colours(const Eigen::Vector3f& before, const Eigen::Vector3f& beyond,
+                          double border_x, int side) {
+  TriMesh head = ball({0, 0, 0}, 40, 60);
+  for (const auto& v : head.vertices) head.colors.push_back(v.x() > border_x ? beyond : before);
+  const std::vector<Part> parts = {make_part("face", Role::face, head)};
+  PictureSettings settings;
+  settings.width = settings.height = side;
+  return SceneRenderer(parts).picture(front_camera(), settings);
+}
+
 TEST_F(Scene, HairIsDullAndDarkSkinIsNot) {
   const Eigen::Vector3f fair(0.85f, 0.66f, 0.56f);
-  PictureSettings settings;
-  settings.width = settings.height = 300;
-  const auto brightest = [&](const Eigen::Vector3f& dark, const Eigen::Vector3f& elsewhere) {
-    TriMesh head = ball({0, 0, 0}, 40, 60);
-    for (const auto& v : head.vertices) head.colors.push_back(v.x() > -14 ? elsewhere : dark);
-    const std::vector<Part> parts = {make_part("face", Role::face, head)};
-    const Image image = SceneRenderer(parts).picture(front_camera(), settings);
+  const auto brightest = [](const Eigen::Vector3f& dark, const Eigen::Vector3f& elsewhere) {
+    const Image image = skin_of_two_colours(dark, elsewhere, -14, 300);
     int most = 0;
     for (int y = 0; y < 300; ++y)  // of the dark part, off its blurred border
       for (int x = 60; x < 100; ++x) most = std::max(most, pixel(image, x, y).r);
@@ -412,14 +418,9 @@ TEST_F(Scene, HairIsDullAndDarkSkinIsNot) {
     EXPECT_LT(brightest(dark, fair), brightest(dark, dark) - 20) << dark.transpose();
 }
 
-TEST_F(Scene, HairCutShortHasAGrainAndGreySkinHasNone) {
-  PictureSettings settings;
-  settings.width = settings.height = 600;
-  const auto grain = [&](const Eigen::Vector3f& colour, const Eigen::Vector3f& elsewhere) {
-    TriMesh head = ball({0, 0, 0}, 40, 60);
-    for (const auto& v : head.vertices) head.colors.push_back(v.x() > -5 ? elsewhere : colour);
-    const std::vector<Part> parts = {make_part("face", Role::face, head)};
-    const Image image = SceneRenderer(parts).picture(front_camera(), settings);
+TEST_F(Scene, HairCutShortHasAGrainAndBrownSkinHasNone) {
+  const auto grain = [](const Eigen::Vector3f& colour, const Eigen::Vector3f& elsewhere) {
+    const Image image = skin_of_two_colours(colour, elsewhere, -5, 600);
     int sum = 0;
     for (int y = 250; y < 350; ++y)
       for (int x = 170; x < 230; ++x)
